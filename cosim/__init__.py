@@ -1,0 +1,1 @@
+"""Scenarios, runs, recordings, replay, comparison: the program around the physics."""

@@ -1,0 +1,1 @@
+"""Broken ice: rigid blocks in vertical x-z sections (rotating and sliding phases)."""
