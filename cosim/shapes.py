@@ -1,0 +1,119 @@
+"""Pictures as arrays: the sheet as a solid mesh, blocks as prisms, edges as points, colours. Pure functions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coupling.interface import Array, BlockTable, BoolArray, IntArray, Phase
+
+#: one colour per phase, in pictures, curves and the legend
+PHASE_RGB = {Phase.BREAKING: (86, 180, 233), Phase.ROTATING: (240, 150, 40), Phase.SLIDING: (0, 190, 140)}
+STRUCTURE_RGB = (214, 178, 72)
+CRACKED_RGB = (38, 56, 92)
+_STOPS = np.array([0.0, 0.35, 0.7, 1.0])  #: utilisation
+_RGB = np.array([(226, 238, 247), (126, 190, 232), (244, 178, 92), (214, 52, 48)], float)
+
+
+def ice_colour(damage: Array, utilisation: Array) -> Array:
+    """RGB 0-255 of sheet nodes: pale ice, blue, orange to red as utilisation goes to 1; cracked ice is dark."""
+    u = np.clip(np.nan_to_num(utilisation), 0, 1)
+    rgb = np.stack([np.interp(u, _STOPS, _RGB[:, k]) for k in range(3)], axis=1)
+    share = np.clip(damage, 0, 1)[:, None]
+    return rgb * (1 - share) + np.array(CRACKED_RGB) * share
+
+
+def cell_quads(intact: BoolArray, cell_shape: tuple[int, int]) -> IntArray:
+    """(k, 4) node numbers of the intact cells, counter-clockwise seen from above."""
+    i, j = np.nonzero(intact.reshape(cell_shape))
+    n = cell_shape[1] + 1
+    a = i * n + j
+    # rows count along x, columns along y; which of the two runs backwards is left to `upward`
+    return np.stack([a, a + n, a + n + 1, a + 1], axis=1)
+
+
+def upward(quads: IntArray, position: Array) -> IntArray:
+    """The same quads, turned so that their normals point up."""
+    if not len(quads):
+        return quads
+    p = position[quads[0], :2]
+    area = np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1])
+    return quads if area > 0 else quads[:, ::-1]
+
+
+def triangles(quads: IntArray) -> IntArray:
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def rim(quads: IntArray) -> IntArray:
+    """(e, 2) directed edges that belong to one intact cell only: the outline of the sheet and of its cracks."""
+    edges = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
+    key = np.sort(edges, axis=1)
+    _, first, count = np.unique(key, axis=0, return_index=True, return_counts=True)
+    return edges[np.sort(first[count == 1])]
+
+
+def solid_sheet(position: Array, quads: IntArray, thickness: float) -> tuple[Array, IntArray, IntArray]:
+    """Vertices, triangles and the node of every vertex: top, underside and the side faces of a sheet."""
+    n, half = len(position), np.array([0, 0, thickness / 2])
+    edge = rim(quads)
+    a, b = edge[:, 0], edge[:, 1]
+    side_node = np.stack([a, b, b, a], axis=1).ravel()
+    side = position[side_node] + np.tile([-half, -half, half, half], (len(edge), 1))
+    vertices = np.concatenate([position + half, position - half, side])
+    face = triangles(quads)
+    wall = 2 * n + np.arange(4 * len(edge)).reshape(-1, 4)
+    all_triangles = np.concatenate([face, face[:, ::-1] + n, triangles(wall)])
+    return vertices, all_triangles, np.concatenate([np.arange(n), np.arange(n), side_node])
+
+
+def prisms(blocks: BlockTable) -> tuple[Array, IntArray, IntArray]:
+    """Points, triangles and the block of every triangle: convex outlines in x-z, extruded by the block's width."""
+    points, faces, owner, base = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)], 0
+    for i in range(blocks.count):
+        outline = blocks.outline[blocks.offset[i]:blocks.offset[i + 1]]
+        k, y, half = len(outline), blocks.position[i, 1], blocks.width[i] / 2
+        for side in (y - half, y + half):
+            points.append(np.column_stack([outline[:, 0], np.full(k, side), outline[:, 1]]))
+        faces.append(prism_faces(k) + base)
+        owner.append(np.full(len(faces[-1]), i))
+        base += 2 * k
+    return np.concatenate(points), np.concatenate(faces), np.concatenate(owner)
+
+
+def prism_faces(k: int) -> IntArray:
+    """Triangles of a prism over a convex polygon of ``k`` corners, counter-clockwise in x-z: normals point out."""
+    fan = np.stack([np.zeros(k - 2, int), np.arange(1, k - 1), np.arange(2, k)], axis=1)
+    a = np.arange(k)
+    b = (a + 1) % k
+    wall = np.concatenate([np.stack([a, a + k, b], axis=1), np.stack([b, a + k, b + k], axis=1)])
+    return np.concatenate([fan, fan[:, ::-1] + k, wall])
+
+
+def flat_shaded(points: Array, faces: IntArray) -> tuple[Array, Array]:
+    """Vertices (3 per triangle, not shared) and their face normals."""
+    corner = points[faces]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    return corner.reshape(-1, 3), np.repeat(normal, 3, axis=0)
+
+
+def along_edges(points: Array, edges: IntArray, spacing: float) -> tuple[Array, IntArray]:
+    """Points at most ``spacing`` apart along edges, and the edge of each."""
+    a, b = points[edges[:, 0]], points[edges[:, 1]]
+    count = np.maximum(np.ceil(np.linalg.norm(b - a, axis=1) / spacing), 1).astype(np.int64)
+    owner = np.repeat(np.arange(len(edges)), count)
+    step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+    share = (step / np.repeat(count, count))[:, None]
+    return a[owner] * (1 - share) + b[owner] * share, owner
+
+
+def prism_edges(blocks: BlockTable) -> tuple[IntArray, IntArray]:
+    """Edges of all prisms, as numbers of the points of `prisms`, and the block of each edge."""
+    edges, owner, base = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)], 0
+    for i, k in enumerate(np.diff(blocks.offset)):
+        a = np.arange(k)
+        ring = np.stack([a, (a + 1) % k], axis=1)
+        edges.append(np.concatenate([ring, ring + k, np.stack([a, a + k], axis=1)]) + base)
+        owner.append(np.full(3 * k, i))
+        base += 2 * k
+    return np.concatenate(edges), np.concatenate(owner)
