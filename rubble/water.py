@@ -93,7 +93,8 @@ def apply_water(edges: Array, offset: IntArray, weight: Array, water: Array, row
     """
     out = np.empty(4)
     for i in range(row.shape[0]):
-        block_force(edges[offset[i]:offset[i + 1]], water[0], water[1], water[2], water[3], water[4], state[row[i]], out)
+        own = edges[offset[i]:offset[i + 1]]
+        block_force(own, water[0], water[1], water[2], water[3], water[4], state[row[i]], out)
         force[row[i], 0], force[row[i], 1], force[row[i], 2] = out[0], out[1] - weight[i], out[2]
         work[0] -= out[3] * water[4]
 
