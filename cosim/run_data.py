@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from cosim import messages
+from cosim.errors import InputError
 from coupling.interface import NS, PHASES, Array, Event, IntArray
 
 DATA_TOPICS = ("/load/structure", "/events", "/ledger")
 Stored = tuple[str, int, bytes]  #: topic, time [ns], serialised message
 
 
-class RecordingError(ValueError):
+class RecordingError(InputError):
     """A recording that cannot be used; the message is one line with its remedy."""
 
 

@@ -7,13 +7,14 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from cosim.errors import InputError
 from cosim.units import Unit
 
 EXAMPLES = {"nodes": "[60, 60]", "back": '"held"', "kind": '"cone"', "title": '"..."', "friction": "0.1",
             "poisson_ratio": "0.3333333333333333"}
 
 
-class ScenarioError(ValueError):
+class ScenarioError(InputError):
     """A scenario that cannot run. The message is one line that names file, key, value and what to do."""
 
 

@@ -100,5 +100,6 @@ def blocks(scenario: Scenario, t: float) -> BlockTable:
     n = len(centre)
     zero = np.zeros((n, 3))
     return BlockTable(np.arange(n), np.repeat(np.arange(9), 2), np.array(phase, np.int64),
-                      np.full(n, 7 * h * 5.2 * 846), np.full(n, 5.2), np.array(centre), np.array(angle), zero, np.zeros(n), zero,
+                      np.full(n, 7 * h * 5.2 * 846), np.full(n, 5.2), np.array(centre),
+                      np.array(angle), zero, np.zeros(n), zero,
                       np.concatenate(outline), 4 * np.arange(n + 1))

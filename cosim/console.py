@@ -1,0 +1,150 @@
+"""What people see in a terminal: progress on standard error, tables. Numbers in MN, s, m^3."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.table import Table
+from rich.text import Text
+
+from cosim.compare import Range, Row, ratio
+from cosim.observer import RunInfo
+from coupling.interface import NS, PHASES, Frame
+
+stderr = Console(stderr=True)
+stdout = Console()
+SCALES = {"N": (1e-6, "MN"), "s": (1.0, "s"), "m^3": (1.0, "m^3")}  #: factor and unit of display
+
+
+class ProgressBar:
+    """Observer that shows simulated time, rate and the time that remains."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self._progress = Progress(
+            TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[now]}"),
+            TextColumn("{task.fields[rate]}"), TextColumn("remaining"), TimeRemainingColumn(),
+            console=console or stderr, transient=True)
+        self._task: TaskID | None = None
+
+    def on_start(self, run_info: RunInfo) -> None:
+        self._duration = run_info.duration_ns / NS
+        self._begin = time.monotonic()
+        self._task = self._progress.add_task(run_info.scenario.title, total=self._duration, now="", rate="")
+        self._progress.start()
+
+    def on_frame(self, frame: Frame) -> None:
+        if self._task is None:
+            return
+        t = frame.t_ns / NS
+        wall = max(time.monotonic() - self._begin, 1e-9)
+        self._progress.update(self._task, completed=t, now=f"{t:6.1f} of {self._duration:g} s",
+                              rate=f"{t / wall:.2f} x real time")
+        for event in frame.events:
+            self._progress.console.print(f"{event.t_ns / NS:8.2f} s  {event.kind}: {event.text}", highlight=False)
+
+    def on_close(self) -> None:
+        self._progress.stop()
+
+
+def run_tables(result: dict[str, Any]) -> list[Table]:
+    """End of a run: peaks by phase, and the events."""
+    peaks = _table("load", "Fx [MN]", "at [s]", "Fz [MN]", "at [s]", "F [MN]", "at [s]", title="Peaks")
+    for name, values in [("total", result["peaks"]), *((p, result["peaks_by_phase"][p]) for p in PHASES)]:
+        cells = [_number(values[key][what], scale) for key in ("fx", "fz", "f")
+                 for what, scale in (("value", 1e-6), ("time", 1.0))]
+        peaks.add_row(name, *cells)
+    tables = [peaks]
+    if result["events"]:
+        tables.append(events_table(result["events"]))
+    return tables
+
+
+def events_table(events: list[dict[str, Any]], most: int = 25) -> Table:
+    """Events with the load at their time; a long list ends with how many are left out."""
+    table = _table("at [s]", "event", "Fx [MN]", "Fz [MN]", "cells", title="Events")
+    for e in events[:most]:
+        table.add_row(_number(e["time"], 1.0), e["kind"], _number(e["fx"], 1e-6), _number(e["fz"], 1e-6),
+                      str(e["cells"]))
+    if len(events) > most:
+        table.add_row("", f"... {len(events) - most} more", "", "", "")
+    return table
+
+
+def compare_table(title: str, rows: list[Row]) -> Table:
+    """Simulated beside computed and measured."""
+    table = _table("feature", "simulated", "thesis", "ratio", "measured", "ratio", "unit", title=title)
+    for row in rows:
+        f = row.feature
+        factor, unit = SCALES.get(f.unit, (1.0, f.unit))
+        table.add_row(f.name, _number(row.simulated, factor), _range(f.thesis, factor),
+                      _number(ratio(row.simulated, f.thesis), 1.0), _range(f.measured, factor),
+                      _number(ratio(row.simulated, f.measured), 1.0), unit)
+    return table
+
+
+def print_run(result: dict[str, Any]) -> None:
+    """End of `cosim run`."""
+    for table in run_tables(result):
+        stdout.print(table)
+    ledger = ", ".join(f"{name} {value:.2g}" for name, value in result["ledger"].items() if value is not None)
+    stdout.print(f"{result['simulated_s']:g} s simulated in {result['wall_s']:.1f} s "
+                 f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, "
+                 f"{result['blocks']} blocks\nledger: {ledger}", highlight=False)
+    if result["recording"]:
+        stdout.print(f"recording: {result['recording']}", highlight=False, soft_wrap=True)
+
+
+def print_info(content: dict[str, Any]) -> None:
+    """`cosim info`."""
+    stdout.print(f"{content['title']} ({content['scenario']}), version {content['version']}, seed {content['seed']}\n"
+                 f"{content['simulated_s']:g} of {content['duration_s']:g} s, {content['windows']} windows, "
+                 f"overrides: {' '.join(content['overrides']) or 'none'}", highlight=False, soft_wrap=True,
+                 markup=False)
+    for table in run_tables(content):
+        stdout.print(table)
+
+
+def print_compare(title: str, rows: list[Row]) -> None:
+    """`cosim compare`: the table, then where the numbers are from."""
+    stdout.print(compare_table(title, rows))
+    for row in rows:
+        stdout.print(f"{row.feature.name}: {row.feature.source}", highlight=False, markup=False, soft_wrap=True)
+
+
+def print_scenarios(rows: list[dict[str, Any]]) -> None:
+    """`cosim list`."""
+    table = _table("scenario", "event", "s", title="Scenarios")
+    table.columns[1].header = Text("what")
+    for row in rows:
+        table.add_row(row["name"], row["title"], f"{row['duration_s']:g}")
+    stdout.print(table)
+
+
+def print_line(text: str) -> None:
+    stdout.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def warn(text: str) -> None:
+    stderr.print(f"warning: {text}", style="yellow", highlight=False, markup=False, soft_wrap=True)
+
+
+def _table(*columns: str, title: str) -> Table:
+    table = Table(title=title, box=box.SIMPLE, title_justify="left")
+    for k, name in enumerate(columns):
+        table.add_column(Text(name), justify="left" if k == 0 or name in ("event", "unit") else "right")
+    return table
+
+
+def _number(value: float | None, factor: float) -> str:
+    return "-" if value is None else f"{value * factor:.2f}"
+
+
+def _range(value: Range | None, factor: float) -> str:
+    if value is None:
+        return "-"
+    low, high = (f"{v * factor:g}" for v in value)
+    return low if low == high else f"{low} to {high}"

@@ -1,0 +1,150 @@
+"""Features of a recorded run, as plain functions: ``feature(run, ...) -> number in SI, or None if the run has none``.
+
+None is an answer: a run without a split has no load at the split. Nothing is filled in. Times count from first contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from cosim.run_data import RunData
+from coupling.interface import NS, PHASES, Event
+
+Kinds = str | Sequence[str]
+
+
+def first_event(run: RunData, event: Kinds) -> Event | None:
+    """The first event of one of these kinds."""
+    kinds = (event,) if isinstance(event, str) else tuple(event)
+    return next((e for e in run.events if e.kind in kinds), None)
+
+
+def first_contact(run: RunData) -> float | None:
+    """Time at which the structure is loaded first [s]: the start of the first window with a load."""
+    loaded = np.flatnonzero(run.component("f") > 0)
+    if not len(loaded):
+        return None
+    window = int(run.metadata["window_ns"])
+    return float(run.t_ns[loaded[0]] - window) / NS
+
+
+def event_load(run: RunData, event: Kinds, component: str = "fx") -> float | None:
+    """Load at the first event of a kind, all phases [N]; component ``fx``, ``fy``, ``fz`` or the resultant ``f``."""
+    found = first_event(run, event)
+    if found is None:
+        return None
+    force = dict(zip(("fx", "fy", "fz"), found.force, strict=True))
+    return float(np.linalg.norm(found.force)) if component == "f" else float(force[component])
+
+
+def event_time(run: RunData, event: Kinds) -> float | None:
+    """Time of the first event of a kind, from first contact [s]."""
+    found, start = first_event(run, event), first_contact(run)
+    return None if found is None or start is None else found.t_ns / NS - start
+
+
+def peak_load(run: RunData, component: str = "fx", phase: str | None = None) -> float | None:
+    """Largest load of a window, of all phases or of one [N]."""
+    return None if not len(run.t_ns) else float(run.component(component, phase).max())
+
+
+def peak_time(run: RunData, component: str = "fx", phase: str | None = None) -> float | None:
+    """Time of `peak_load` from first contact [s]."""
+    start = first_contact(run)
+    return None if start is None else float(run.t[run.component(component, phase).argmax()]) - start
+
+
+def build_up_time(run: RunData, event: Kinds, component: str = "fx") -> float | None:
+    """Time from the last window below a tenth of the load at the event to the event [s]."""
+    found, limit = first_event(run, event), event_load(run, event, component)
+    if found is None or limit is None:
+        return None
+    low = np.flatnonzero((run.t_ns <= found.t_ns) & (run.component(component) < 0.1 * limit))
+    begin = run.t_ns[low[-1]] if len(low) else run.t_ns[0]
+    return float(found.t_ns - begin) / NS
+
+
+def level_between_peaks(run: RunData, component: str = "fx", share: float = 0.05) -> float | None:
+    """Mean load of the windows with neither breaking nor rotating, after the first circumferential event [N].
+
+    "Neither" means below ``share`` of the largest load of the run (thesis 6.3.1: "the non-zero load between the load
+    peaks, where no breaking and rotating occurs").
+    """
+    found = first_event(run, ("circumferential", "hand_over"))
+    if found is None:
+        return None
+    total = run.component(component)
+    other = np.abs(run.component(component, "breaking")) + np.abs(run.component(component, "rotating"))
+    between = (run.t_ns > found.t_ns) & (other < share * np.abs(total).max()) & (total > 0)
+    return float(total[between].mean()) if between.any() else None
+
+
+def load_period(run: RunData, component: str = "fx", after: Kinds | None = None, before: Kinds | None = None,
+                ) -> float | None:
+    """Dominant period of the load cycles [s]: largest line of the spectrum with at least three periods in the record.
+
+    The record runs between the first events ``after`` and ``before``; its linear trend is taken off and a Hann window
+    is laid over it. None without an event ``after``, or if the record is shorter than 8 windows.
+    """
+    begin, end = _between(run, after, before)
+    if begin is None:
+        return None
+    chosen = (run.t_ns > begin) & (run.t_ns <= end)
+    t, load = run.t[chosen], run.component(component)[chosen]
+    if len(t) < 8 or np.ptp(load) == 0:
+        return None
+    cycles = load - np.polyval(np.polyfit(t, load, 1), t)
+    padded = 8 * len(t)
+    power = np.abs(np.fft.rfft(cycles * np.hanning(len(t)), padded)) ** 2
+    frequency = np.fft.rfftfreq(padded, t[1] - t[0])
+    power[frequency < 3 / (t[-1] - t[0])] = 0
+    return float(1 / frequency[power.argmax()]) if power.any() else None
+
+
+def _between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[int | None, int]:
+    first = first_event(run, after) if after else None
+    last = first_event(run, before) if before else None
+    begin = (first.t_ns if first else None) if after else 0
+    return begin, last.t_ns if last else int(run.t_ns[-1]) if len(run.t_ns) else 0
+
+
+def rubble_volume(run: RunData) -> float | None:
+    """Largest volume of broken ice in front of the structure [m^3], from the ledger's ``rubble_mass``."""
+    mass = run.ledger.get("rubble_mass")
+    if mass is None or not np.isfinite(mass).any():
+        return None
+    return float(np.nanmax(mass)) / float(run.metadata["ice_density"])
+
+
+def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float | None]]:
+    """Largest Fx, Fz and resultant with their simulated times, of all phases or of one."""
+    out: dict[str, dict[str, float | None]] = {}
+    for name in ("fx", "fz", "f"):
+        values = run.component(name, phase)
+        k = int(values.argmax()) if len(values) else None
+        out[name] = {"value": None, "time": None} if k is None else {"value": float(values[k]), "time": float(run.t[k])}
+    return out
+
+
+def summary(run: RunData) -> dict[str, Any]:
+    """What a recording holds, as `cosim info --json` prints it."""
+    return {
+        "run": run.name, "scenario": run.metadata["scenario"], "title": run.metadata["title"],
+        "version": run.metadata["version"], "seed": int(run.metadata["seed"]), "overrides": run.overrides,
+        "simulated_s": float(run.t[-1]) if len(run.t) else 0.0, "duration_s": int(run.metadata["duration_ns"]) / NS,
+        "windows": len(run.t), "peaks": peaks(run), "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
+        "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fz": e.force[2], "cells": e.cells}
+                   for e in run.events],
+        "ledger": {name: float(values[-1]) for name, values in run.ledger.items()},
+    }
+
+
+#: the functions that a reference file may name
+QUANTITIES: dict[str, Callable[..., float | None]] = {
+    f.__name__: f
+    for f in (event_load, event_time, peak_load, peak_time, build_up_time, level_between_peaks, load_period,
+              rubble_volume)
+}
