@@ -1,0 +1,60 @@
+"""Parameters of a case: defaults that a user may replace with ``--set name=value``."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+
+def parse(settings: Mapping[str, Any] | Iterable[str] | None) -> dict[str, Any]:
+    """``["nodes=[25,41]", "nu=0.25"]`` or a mapping -> ``{"nodes": [25, 41], "nu": 0.25}``; text stays text."""
+    if settings is None:
+        return {}
+    if isinstance(settings, Mapping):
+        return {key: _number(text) if isinstance(text, str) else text for key, text in settings.items()}
+    out = {}
+    for item in settings:
+        key, sign, text = item.partition("=")
+        if not sign:
+            raise ValueError(f"--set {item}: write name=value")
+        out[key.strip()] = _number(text.strip())
+    return out
+
+
+def _number(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        return text
+
+
+def merged(case: str, defaults: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Defaults with the user's changes; a key that the case does not know or a value of another kind is refused."""
+    for key, new in changes.items():
+        if key not in defaults:
+            close = difflib.get_close_matches(key, defaults, 1)
+            hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(defaults)}"
+            raise ValueError(f"{case} has no parameter {key}: {hint}")
+        if _kind(new) != _kind(defaults[key]) or (isinstance(new, list) and not new):
+            raise ValueError(f"{case}: {key} = {json.dumps(new)} must be a {_kind(defaults[key])}, "
+                             f"for example {json.dumps(defaults[key])}")
+    return {**defaults, **changes}
+
+
+def _kind(value: Any) -> str:
+    if isinstance(value, bool):
+        return "switch"
+    if isinstance(value, int | float):
+        return "number"
+    return "list" if isinstance(value, list) else "text"
+
+
+def meshes(nodes: list[Any]) -> list[tuple[int, int]]:
+    """``[25, 41]`` or ``[[19, 31], [31, 51]]`` -> list of (nx, ny)."""
+    pairs = nodes if isinstance(nodes[0], list) else [nodes]
+    for pair in pairs:
+        if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(n, int) for n in pair):
+            raise ValueError(f"nodes = {json.dumps(nodes)}: write [nx,ny] or [[nx,ny],...] with whole numbers")
+    return [(pair[0], pair[1]) for pair in pairs]
