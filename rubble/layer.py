@@ -175,7 +175,7 @@ class RubbleLayer:
             side_step(block, self.physics, -side, grip, hypot(state[3], state[4]), dt)
 
     def _update_phase(self, section: Section, block: Block, state: Array, *, touches_sheet: bool) -> None:
-        """Rotating until the long axis has once aligned with the nearest slope and the sheet is let go; then sliding."""
+        """Rotating until the long axis has once aligned with the nearest slope and has left the sheet; then sliding."""
         if block.phase == SLIDING:
             return
         if not block.aligned:

@@ -13,6 +13,8 @@ that was asked for, the softer one a somewhat larger m, ``sqrt(m_i) = sqrt(M) - 
 
 ``F_a`` is the rubble's force that the lattice already carries in the position handed over. With it the spring answers
 only to the change since, and compliance is not counted twice; without it (0) the edge yields by F / k on top.
+Between windows the driver jumps to where the lattice is, the body stays where it was: no contact is torn or pressed
+by a jump, and the spring keeps the body from drifting away.
 """
 
 from __future__ import annotations
@@ -57,9 +59,7 @@ class SheetBody:
 
     def follow(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
                stiffness: tuple[float, float], applied: tuple[float, float]) -> None:
-        """Take over the lattice's position for a window. The offset from the driver (the spring's yield) stays."""
-        px, pz = self.body.position
-        self.body.position = float(x[0] + px - self.driver[0]), float(z[0] + pz - self.driver[1])
+        """Take over the lattice's position for a window. Only the driver jumps to it; the body follows on its spring."""
         self.driver[:] = x[0], z[0], *velocity.mean(axis=0)
         self._set_spring(np.array(stiffness, dtype=np.float64), applied)
         self.nodes = np.column_stack([x, z, np.zeros((len(x), 2))])

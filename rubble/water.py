@@ -7,7 +7,8 @@ between strips, whose width is the difference of the two.
 * Buoyancy is the integral of the water pressure over the edges, exact for straight edges. By the divergence theorem
   it equals rho_w g times the submerged area (`geometry.submerged`); a test keeps the two together.
 * Form drag: where the body moves into the water (u.n > 0), ``-rho_w/2 C_d (u.n) u`` per area. For a translation this is
-  C_d on the projected submerged extent; for a rotation it gives the moment with the same coefficient.
+  C_d on the projected submerged extent; for a rotation it gives the moment with the same coefficient (three Gauss
+  points per edge: 3 % too much for an edge that turns about its middle).
 * Skin drag: ``-rho_w/2 C_f |u_t| u_t`` per wetted area, u_t along the edge.
 * Added mass stands in mass and moment of inertia of the body, see `section`.
 
@@ -89,7 +90,8 @@ def apply_water(edges: Array, offset: IntArray, weight: Array, water: Array, row
     """Weight, buoyancy and drag of all blocks of a section, written to their rows of ``force`` (Fx, Fz, moment).
 
     Block i owns ``edges[offset[i]:offset[i + 1]]`` and stands in row ``row[i]`` of ``state``; ``weight`` in newtons;
-    ``water`` = (rho_w g, rho_w / 2, C_d, C_f, sub-step). ``work[0]`` collects the energy lost to drag [J].
+    ``water`` = (rho_w g, rho_w / 2, C_d, C_f, sub-step). ``work`` collects the energy lost to drag [J] and the impulse of
+    all these forces in x and z [N s].
     """
     out = np.empty(4)
     for i in range(row.shape[0]):
@@ -97,6 +99,8 @@ def apply_water(edges: Array, offset: IntArray, weight: Array, water: Array, row
         block_force(own, water[0], water[1], water[2], water[3], water[4], state[row[i]], out)
         force[row[i], 0], force[row[i], 1], force[row[i], 2] = out[0], out[1] - weight[i], out[2]
         work[0] -= out[3] * water[4]
+        work[1] += force[row[i], 0] * water[4]
+        work[2] += force[row[i], 1] * water[4]
 
 
 def strips(polygon: Array, cuts: Array, widths: Array) -> list[Array]:

@@ -1,0 +1,197 @@
+"""Sections together: reproducible, mass kept, blocks clear sideways and downstream, phases."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from rubble.block import ROTATING, SLIDING
+from rubble.geometry import moments, place
+from rubble.layer import Domain, RubbleLayer
+from rubble.outline import convex_parts
+from rubble.physics import RubblePhysics
+
+WIDTH, H = 2.8, 3.0
+PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H)
+
+
+def cone_cut(y):
+    """Cone of 45 degrees, radius 15 m at the waterline, 5 m at its neck in 10 m depth: r = 15 + z."""
+    z = np.concatenate([[-20.0], np.linspace(-10.0, 5.0, 61)])
+    square = np.maximum(15 + z, 5.0) ** 2 - y**2
+    keep = square > 0
+    return convex_parts(np.column_stack([-np.sqrt(square[keep]), z[keep]]))
+
+
+def cone_ratio(y, x, z):
+    return y / x
+
+
+def rectangle(x0, z0, x1, z1):
+    return np.array([(x0, z0), (x1, z0), (x1, z1), (x0, z1)], dtype=float)
+
+
+def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
+    ends = np.array([x, x + length])
+    return layer.add_block(key, rectangle(x, z - H, x + length, z), ends, np.array([WIDTH]), 846.0, velocity, 0.0,
+                           layer.centre(key) if y is None else y, 7)
+
+
+def filled(threads=1, **kwargs):
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, ratio=cone_ratio, threads=threads, **kwargs)
+    for key in (2, -1, 0, -2, 1):
+        for i in range(8):
+            add(layer, key, -17.5 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4))
+    return layer
+
+
+def drive(layer, windows):
+    for w in range(windows):
+        for key in list(layer.sections):
+            x = np.arange(-16.0, -50.0, -2.8) + 0.025 * w
+            layer.set_sheet(key, x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H, (1e9, 3e7))
+        layer.advance(10)
+    return layer
+
+
+def picture(layer):
+    t = layer.table()
+    forces = [layer.sheet_forces(k) for k in layer.sections]
+    return b"".join(np.ascontiguousarray(a).tobytes() for a in (t.id, t.position, t.angle, t.velocity, t.load, *forces))
+
+
+def test_two_runs_give_the_same_bits_with_one_thread_and_with_two():
+    runs = [drive(filled(threads), 60) for threads in (1, 1, 2)]
+    assert runs[0].load_on_structure.any()
+    assert picture(runs[0]) == picture(runs[1])
+    assert picture(runs[0]) == picture(runs[2])
+
+
+def test_layers_side_by_side_do_not_disturb_each_other():
+    with ThreadPoolExecutor(2) as pool:
+        both = list(pool.map(lambda _: picture(drive(filled(), 20)), range(2)))
+    assert both[0] == both[1] == picture(drive(filled(), 20))
+
+
+def balance(layer, *, leak=0.0):
+    return layer.mass + layer.cleared_mass - leak
+
+
+def test_mass_stays_through_side_steps_and_clearing():
+    layer = filled(domain=Domain(x_max=-14.0))
+    total = layer.mass
+    count = len(layer.table().id)
+    keys = dict(zip(layer.table().id.tolist(), layer.table().section.tolist(), strict=True))
+    for section in layer.sections.values():
+        for block in section.blocks:
+            block.v_y = 0.4 * (1 if block.id % 2 else -1)
+    drive(layer, 120)
+    table = layer.table()
+    assert layer.cleared and len(table.id) + len(layer.cleared) == count
+    assert any(keys[i] != s for i, s in zip(table.id.tolist(), table.section.tolist(), strict=True))
+    assert balance(layer) == pytest.approx(total, rel=1e-14)
+    assert balance(layer, leak=2 * layer.cleared_mass) != pytest.approx(total, rel=1e-3)
+    assert len(set(table.id.tolist()) | set(layer.cleared)) == count
+
+
+def test_a_block_crosses_into_the_next_section_with_its_motion():
+    layer = RubbleLayer(PHYSICS, WIDTH)
+    add(layer, 0, -26.0, 0.4, y=1.39, velocity=(0.3, 0.0))
+    layer.section(0).blocks[0].v_y = 0.5
+    layer.advance(10)
+    table = layer.table()
+    assert table.section[0] == 1 and table.position[0, 1] > 1.4
+    assert table.velocity[0] == pytest.approx([0.3, 0.5, 0.0], abs=0.05)
+    layer.advance(10)
+    assert layer.table().id[0] == 0
+
+
+def test_a_block_without_room_next_door_waits_at_the_border():
+    layer = RubbleLayer(PHYSICS, WIDTH)
+    add(layer, 0, -26.0, 0.4, y=1.39, velocity=(0.0, 0.0))
+    add(layer, 1, -25.0, 0.4, velocity=(0.0, 0.0))
+    layer.section(0).blocks[0].v_y = 0.5
+    layer.advance(10)
+    table = layer.table()
+    assert table.section.tolist() == [0, 1]
+    assert table.velocity[0, 1] == 0.0
+    assert table.position[0, 1] == pytest.approx(1.4)
+
+
+def test_blocks_are_pushed_outwards_on_both_sides_of_the_cone():
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, ratio=cone_ratio)
+    for key in (-2, 2):
+        add(layer, key, -21.0, -0.2, velocity=(1.0, 0.0))
+    left = right = 0.0
+    for _ in range(60):
+        layer.advance(10)
+        right, left = right + layer.table().load[0, 1], left + layer.table().load[1, 1]
+    v = layer.table().velocity[:, 1]
+    assert v[0] < 0 < v[1] and v[0] == pytest.approx(-v[1], rel=1e-9)
+    assert left < 0 < right  # the structure is pushed towards the middle plane
+
+
+def test_a_block_is_trimmed_and_refused_inside_the_structure():
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut)
+    polygon = rectangle(-20.0, -4.0, -12.5, -1.0)  # the face is at x = -15 - z: -14 below, -11 at the bottom
+    with pytest.raises(ValueError, match="trim its outline first") as error:
+        layer.add_block(0, polygon, np.array([-20.0, -12.5]), np.array([WIDTH]), 846.0, (0, 0), 0.0, 0.0, 0)
+    assert "\n" not in str(error.value)
+    rest = layer.trim(polygon, 0)
+    assert moments(rest)[0] == pytest.approx(7.5 * 3.0 - 1.5**2 / 2, rel=1e-9)
+    layer.add_block(0, rest, np.array([-20.0, -12.5]), np.array([WIDTH]), 846.0, (0, 0), 0.0, 0.0, 0)
+    layer.advance(20)
+    assert np.abs(layer.load_on_structure).max() < 2e5  # touching, not thrown out
+
+
+def test_a_block_rotates_until_it_lies_along_the_slope_and_has_left_the_sheet():
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut)
+    flat = rectangle(-22.0, -5.0, -16.0, -2.0)
+    along = place(rectangle(-3.0, -1.5, 3.0, 1.5), -12.0, -7.0, -np.pi / 4, -0.0, 0.0) + [-0.75, -0.75]
+    for polygon in (flat, along):
+        ends = np.array([polygon[:, 0].min(), polygon[:, 0].max()])
+        layer.add_block(0, polygon, ends, np.array([WIDTH]), 846.0, (0, 0), 0.0, 0.0, 0)
+    layer.advance(1)
+    assert layer.table().phase.tolist() == [ROTATING, SLIDING]
+
+
+def test_the_table_is_in_the_order_of_numbers_and_its_outlines_fit():
+    layer = filled()
+    layer.advance(5)
+    t = layer.table()
+    assert t.id.tolist() == list(range(40)) and t.offset[-1] == len(t.outline) and (t.fragment == 7).all()
+    for i in range(40):
+        area, x, z, _ = moments(np.ascontiguousarray(t.outline[t.offset[i]:t.offset[i + 1]]))
+        assert area * t.width[i] * 846 == pytest.approx(t.mass[i], rel=1e-9)
+        assert (x, z) == pytest.approx(tuple(t.position[i, [0, 2]]), rel=1e-9)
+
+
+def test_an_empty_layer_runs():
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut)
+    layer.advance(3)
+    t = layer.table()
+    assert len(t.id) == 0 and t.load.shape == (0, 3) and layer.mass == 0.0 and not layer.momentum.any()
+    assert layer.sheet_forces(4).shape == (0, 2)
+
+
+def test_removing_the_sheet_frees_the_block_under_it():
+    layer = RubbleLayer(PHYSICS, WIDTH)
+    x = np.array([0.0, -3.0, -6.0, -9.0])
+    layer.set_sheet(0, x, 0 * x, 1.5, np.zeros((4, 2)), H, (1e9, 1e9))
+    add(layer, 0, -7.0, -1.6, velocity=(0.0, 0.0))
+    layer.advance(400)
+    held = layer.table().position[0, 2]
+    layer.remove_sheet(0)
+    layer.advance(400)
+    assert layer.table().position[0, 2] > held + 0.5
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda la: la.advance(0), "at least 1"),
+    (lambda la: la.set_sheet(0, [0.0, 1.0], [0, 0], 2.0, np.zeros((2, 2)), H, (1e9, 1e9)), "must decrease"),
+    (lambda la: la.set_sheet(0, [0.0, -1.0], [0, 0], 1.0, np.zeros((2, 2)), H, (1e9, np.inf)), "finite"),
+    (lambda la: RubbleLayer(PHYSICS, 0.0), "pitch"),
+])
+def test_bad_calls_are_refused(call, words):
+    with pytest.raises(ValueError, match=words):
+        call(RubbleLayer(PHYSICS, WIDTH))
