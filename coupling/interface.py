@@ -74,7 +74,7 @@ class Fragment:
     partition the sheet and a crack costs no ice. Rows count along x (drift), columns along y.
     """
 
-    row: IntArray  #: (n,) row index of each node, 0 at the edge that faces the structure
+    row: IntArray  #: (n,) row of each node, counted from the edge that faces the structure
     column: IntArray  #: (n,) column index of each node
     mass: Array  #: (n,) mass without what was crushed [kg]
     length: Array  #: (n,) extent of the node's ice along x [m]
@@ -84,6 +84,9 @@ class Fragment:
     velocity: Array  #: (n, 3) [m/s]
     tilt: Array  #: (n,) rotation of the node about +y (lifts the rear and lowers the front edge when > 0) [rad]
     tilt_rate: Array  #: (n,) [rad/s]
+    cut: Array  #: (n,) how far the face that touches is crushed back, from the front of the node's ice [m]
+    cut_tan: Array  #: (n,) steepness of the cut: depth below the touching face over distance along x
+    cut_face: float  #: +1 if the upper edge of the ice was crushed (downward-breaking structure), -1 the lower
     thickness: float  #: [m]
 
 

@@ -1,0 +1,109 @@
+"""From a scenario to participants: the only place where solvers are put together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cosim.observer import RunInfo
+from cosim.scenario import Scenario
+from coupling.contact import ContactLaw
+from coupling.interface import Array, IntArray
+from coupling.ledger import Ledger
+from coupling.rubble_port import NoRubble, RubblePort
+from coupling.scheduler import RubbleParticipant, Scheduler
+from coupling.schemes import SCHEMES
+from coupling.sheet_port import SheetPort
+from coupling.structure import Structure, cone, plane_slope
+from lattice.grid import Grid
+from lattice.ice import BeamTest, Ice
+from lattice.sheet import Sheet
+from lattice.stiffness import hrennikoff
+from rubble.layer import Domain
+from rubble.physics import RubblePhysics
+
+
+def build(scenario: Scenario) -> Scheduler:
+    """All participants of a run, at rest, with the floe touching the structure."""
+    structure = build_structure(scenario)
+    ice = build_ice(scenario)
+    sheet = build_sheet(scenario, ice, structure)
+    law = ContactLaw(scenario.contact.strength, scenario.contact.friction)
+    columns = scenario.rubble.columns_per_section
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns)
+    rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
+    ledger = Ledger(port.initial_mass)
+    return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[scenario.coupling.scheme])
+
+
+def build_ice(scenario: Scenario) -> Ice:
+    i, w = scenario.ice, scenario.water
+    test = None if i.beam_test is None else BeamTest(i.beam_test.length, i.beam_test.width, i.beam_test.failure_load,
+                                                     i.beam_test.factor)
+    return Ice(E=i.youngs_modulus, nu=i.poisson_ratio, h=i.thickness, rho_i=i.density, rho_w=w.density, g=w.gravity,
+               sigma_t=i.tensile_strength, sigma_f=i.flexural_strength, sigma_c=i.compressive_strength, beam_test=test)
+
+
+def build_structure(scenario: Scenario) -> Structure:
+    s = scenario.structure
+    if s.kind == "plane":
+        return plane_slope(s.slope, top=s.top, toe_depth=s.toe_depth)
+    return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth)
+
+
+def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
+    """The floe, its front on the structure's axis plane just touching the face at the height of its upper edge."""
+    s = scenario.sheet
+    front = float(structure.face_x(0.0, ice.freeboard))
+    grid = Grid.rectangle(s.length, s.width, *s.nodes, x0=front - s.length, y0=-s.axis)
+    held = np.zeros(grid.nodes, bool)
+    if s.back == "held":
+        held[grid.edge_nodes("x-")] = True
+    if s.sides == "held":
+        held[grid.edge_nodes("y-")] = held[grid.edge_nodes("y+")] = True
+    damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
+    return Sheet(grid, ice, hrennikoff(ice), scenario.coupling.window, held=held, damping=damping,
+                 alpha=scenario.ice.material_damping)
+
+
+def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
+    r, i = scenario.rubble, scenario.ice
+    physics = RubblePhysics(
+        rho_i=i.density, rho_w=scenario.water.density, g=scenario.water.gravity, mu_ice_ice=r.friction_ice_ice,
+        mu_structure=r.friction_structure, restitution=r.restitution, form_drag=r.form_drag, skin_drag=r.skin_drag,
+        added_mass=r.added_mass, added_inertia=r.added_mass, thickness=i.thickness, iterations=r.iterations,
+        substep=r.substep, sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2)
+    pitch = r.columns_per_section * grid.d
+    reach = float(structure.radius(0.0)) if structure.revolved else 0.0
+    half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
+    domain = Domain(x_max=reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
+    return RubblePort(structure, physics, pitch=pitch, origin=grid.y0 + 0.5 * (pitch - grid.d),
+                      columns_per_section=r.columns_per_section, domain=domain, threads=r.threads)
+
+
+def run_info(scenario: Scenario) -> RunInfo:
+    """What stays constant over a run, for observers."""
+    mesh = structure_mesh(build_structure(scenario), 2.0 * scenario.sheet.width)
+    return RunInfo(scenario, mesh, tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns,
+                   scenario.window_ns)
+
+
+def structure_mesh(structure: Structure, width: float, around: int = 96) -> tuple[Array, IntArray]:
+    """Triangles of the structure's surface; a plane slope is drawn ``width`` wide. The sea bed is left out."""
+    z = structure.z.copy()
+    z[0] = max(z[0], -40.0)
+    r = structure.radius(z)
+    if structure.revolved:
+        angle = np.linspace(0.0, 2.0 * np.pi, around + 1)
+        ring = np.stack((np.cos(angle), np.sin(angle)))
+        points = np.stack((r[:, None] * ring[0], r[:, None] * ring[1], z[:, None] + 0.0 * ring[0]), axis=-1)
+    else:
+        y = np.array([-0.5 * width, 0.5 * width])
+        points = np.stack((-r[:, None] + 0.0 * y, y + 0.0 * r[:, None], z[:, None] + 0.0 * y), axis=-1)[:, ::-1]
+    rows, columns = points.shape[:2]
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
+    a = (i * columns + j).ravel()
+    triangles = np.concatenate((np.column_stack((a, a + 1, a + columns)),
+                                np.column_stack((a + 1, a + columns + 1, a + columns))))
+    return points.reshape(-1, 3), triangles.astype(np.int64)

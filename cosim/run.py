@@ -1,0 +1,100 @@
+"""Runs a scenario and keeps what a person asks for at the end: peaks by phase, events, balances."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cosim.build import build, run_info
+from cosim.observer import Observer
+from cosim.scenario import Scenario
+from coupling.interface import NS, PHASES, Array, Event, Frame
+from coupling.scheduler import Scheduler
+
+COMPONENTS = ("fx", "fy", "fz", "f")
+
+
+class Peaks:
+    """Largest mean load of a window, by component; f is the resultant."""
+
+    def __init__(self) -> None:
+        self.value, self.t_ns = np.zeros(4), np.zeros(4, np.int64)
+
+    def see(self, t_ns: int, load: Array) -> None:
+        """Takes in the load (3,) of a window."""
+        now = np.array([*load, np.linalg.norm(load)])
+        higher = np.abs(now) > np.abs(self.value)
+        self.value[higher], self.t_ns[higher] = now[higher], t_ns
+
+    def to_json(self) -> dict[str, dict[str, float]]:
+        return {name: {"value": float(v), "time": t / NS}
+                for name, v, t in zip(COMPONENTS, self.value, self.t_ns.tolist(), strict=True)}
+
+
+@dataclass
+class RunResult:
+    """What a run came to, in SI units."""
+
+    scenario: Scenario
+    wall_s: float = 0.0
+    t_ns: int = 0
+    peaks: Peaks = field(default_factory=Peaks)
+    by_phase: dict[str, Peaks] = field(default_factory=lambda: {p: Peaks() for p in PHASES})
+    events: list[Event] = field(default_factory=list)
+    fragments: int = 0
+    blocks: int = 0
+    ledger: dict[str, float] = field(default_factory=dict)
+
+    def see(self, frame: Frame) -> None:
+        """Takes in one window."""
+        self.t_ns = frame.t_ns
+        self.peaks.see(frame.t_ns, frame.load.sum(axis=0))
+        for phase, load in zip(PHASES, frame.load, strict=True):
+            self.by_phase[phase].see(frame.t_ns, load)
+        self.events.extend(frame.events)
+
+    def to_json(self) -> dict[str, Any]:
+        simulated = self.t_ns / NS
+        return {
+            "scenario": self.scenario.title, "simulated_s": simulated, "wall_s": self.wall_s,
+            "real_time_factor": simulated / self.wall_s, "peaks": self.peaks.to_json(),
+            "peaks_by_phase": {name: p.to_json() for name, p in self.by_phase.items()},
+            "events": [event_json(e) for e in self.events], "fragments": self.fragments, "blocks": self.blocks,
+            "ledger": self.ledger,
+        }
+
+
+def event_json(e: Event) -> dict[str, Any]:
+    return {"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fy": e.force[1], "fz": e.force[2],
+            "cells": e.cells, "position": list(e.position), "text": e.text}
+
+
+def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunResult:
+    """Simulates a scenario to its end; observers see every window. They are closed by whoever made them."""
+    began = time.perf_counter()
+    scheduler = build(scenario)
+    result = RunResult(scenario)
+    info = run_info(scenario)
+    for observer in observers:
+        observer.on_start(info)
+    while scheduler.t_ns < scenario.duration_ns:
+        frame = scheduler.macro_step()
+        result.see(frame)
+        for observer in observers:
+            observer.on_frame(frame)
+    _finish(result, scheduler)
+    result.wall_s = time.perf_counter() - began
+    return result
+
+
+def _finish(result: RunResult, scheduler: Scheduler) -> None:
+    books = scheduler.ledger
+    result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
+    result.ledger = {"mass_error": books.mass_error, "momentum_error": books.momentum_error,
+                     "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,
+                     "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
+                     "cleared_mass": scheduler.rubble.cleared_mass}

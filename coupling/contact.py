@@ -1,0 +1,89 @@
+"""Contact of the sheet's edge with the structure (thesis 6.2, Figure 6-3).
+
+The edge of the ice that touches first (the upper one at a downward-breaking structure) overlaps the face of the
+structure by L, measured along the drift. The face then cuts the ice along the length L / cos(a), at most h / sin(a),
+and the force is
+
+    contact strength x contact length x width,  normal to the structure in three dimensions,
+
+with friction mu along the slope against the ice that is pushed past it. The overlap is integrated over the width that
+belongs to a node, at `SAMPLES` points: sampled at nodes alone, coarse meshes see too much of a round structure.
+
+The force acts on the node, at middle thickness, and the overlap counts the deflection of the edge but not its
+rotation. This reading reproduces the thesis: the 55 m floe splits at 3.18 MN and 19.8 s (thesis 3.2 MN). With the
+rotation and with the moment of a force that acts at the upper edge it splits at 3.48 MN and 20.9 s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupling.interface import Array, IntArray
+from coupling.structure import Structure
+
+SAMPLES = 8  #: points across the width of a node
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """The thesis's contact: a strength that is a parameter of the model, not a property of the ice (6.2)."""
+
+    strength: float  #: contact parameter [Pa]
+    friction: float  #: ice on structure [-]
+
+
+class OverlapContact:
+    """Contact force on the nodes of the sheet's edge. Displacements are relative to the drifting frame."""
+
+    def __init__(self, structure: Structure, law: ContactLaw, velocity: float, thickness: float, freeboard: float):
+        """``velocity`` of the drift [m/s], ``thickness`` and ``freeboard`` of the floating sheet [m]."""
+        self._s, self._law, self._v, self._h = structure, law, velocity, thickness
+        #: +1 if the upper edge of the ice touches (downward-breaking structure), -1 if the lower one does
+        self.face = 1.0 if structure.normal(0.0, 0.0)[2] < 0.0 else -1.0
+        self._z = freeboard - 0.5 * thickness + self.face * 0.5 * thickness
+        self._dy = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
+        self.set_edge(np.empty(0, np.int64), *np.zeros((3, 0)))
+
+    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
+        """Nodes of the edge and, per node (m,) [m], the front of its ice at t = 0, and the width of its ice.
+
+        ``y`` is the middle of the node's ice, which is not the node at the sides of the floe.
+        """
+        self.nodes, self._x, self._width = nodes, x, width
+        self._sample_y = y[:, None] + width[:, None] * self._dy
+
+    def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
+        """L at the sample points (m, SAMPLES) [m] and the outward normal of the structure there (m, SAMPLES, 3)."""
+        z = self._z + y[:, 2]
+        x = self._x + self._v * t + y[:, 0]
+        face = self._s.face_x(self._sample_y, z[:, None])
+        L = np.where(np.isnan(face), 0.0, np.maximum(x[:, None] - face, 0.0))
+        return L, np.nan_to_num(self._s.normal(self._sample_y, z[:, None]), nan=1.0)
+
+    def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
+        """Force on the ice (m, 5) and tangent (m, 5, 5) for y = u_x, u_y, w, phi_x, phi_y: an `EdgeContact`."""
+        m = len(self.nodes)
+        force, tangent = np.zeros((m, 5)), np.zeros((m, 5, 5))
+        L, normal = self.overlap(t, y)
+        on = np.flatnonzero(L.any(axis=1))
+        if not len(on):
+            return force, tangent
+        L, normal, width = L[on], normal[on], self._width[on, None]
+        sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
+        full = self._h * cos / sin
+        direction = self._direction(normal, sin)
+        per_overlap = (self._law.strength * width / SAMPLES / cos)[..., None] * direction
+        force[on, :3] = (per_overlap * np.minimum(L, full)[..., None]).sum(axis=1)
+        growing = per_overlap * ((L > 0.0) & (L < full))[..., None]
+        rise = normal[..., 2] / normal[..., 0]  # -dx/dz of the face: dL/dw
+        tangent[on, :3, 0] = growing.sum(axis=1)
+        tangent[on, :3, 2] = (growing * rise[..., None]).sum(axis=1)
+        return force, tangent
+
+    def _direction(self, normal: Array, sin: Array) -> Array:
+        """Normal plus friction, (m, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
+        up = np.array([0.0, 0.0, 1.0])
+        up_slope = (up - normal[..., 2:] * normal) / sin[..., None]
+        return normal + self._law.friction * self.face * up_slope

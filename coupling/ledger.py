@@ -1,0 +1,44 @@
+"""Balances of a run, checked in every window: what was there is still there, under its name.
+
+Mass: sheet + rubble + crushed + cleared = initial. Momentum: the blocks that a fragment has become carry what the
+same ice carried in the sheet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from coupling.interface import NS, SimulationError
+
+
+@dataclass
+class Ledger:
+    """Running balances; ``tolerance`` is the largest relative error that a run survives."""
+
+    initial_mass: float  #: [kg]
+    tolerance: float = 1e-9
+    trimmed_mass: float = 0.0  #: crushed at hand-over [kg]
+    handed_over_mass: float = 0.0  #: that has become blocks [kg]
+    mass_error: float = 0.0  #: largest so far, relative to the initial mass
+    momentum_error: float = 0.0  #: largest of all hand-overs, relative
+
+    def hand_over(self, t_ns: int, mass: float, trimmed: float, momentum_error: float) -> None:
+        """Books one fragment."""
+        self.trimmed_mass += trimmed
+        self.handed_over_mass += mass - trimmed
+        self.momentum_error = max(self.momentum_error, momentum_error)
+        self._check("momentum of a hand-over", momentum_error, t_ns)
+
+    def close_window(self, t_ns: int, sheet: float, crushed: float, rubble: float, cleared: float) -> dict[str, float]:
+        """Closes the books of a window; returns them by name [kg]."""
+        crushed += self.trimmed_mass
+        error = abs(sheet + rubble + crushed + cleared - self.initial_mass) / self.initial_mass
+        self.mass_error = max(self.mass_error, error)
+        self._check("mass", error, t_ns)
+        return {"sheet_mass": sheet, "rubble_mass": rubble, "crushed_mass": crushed, "cleared_mass": cleared,
+                "mass_error": error}
+
+    def _check(self, term: str, error: float, t_ns: int) -> None:
+        if not error <= self.tolerance:
+            raise SimulationError(f"t = {t_ns / NS:.3f} s: the balance of {term} is off by {error:.3g} (allowed "
+                                  f"{self.tolerance:g}); please report the scenario")

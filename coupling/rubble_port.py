@@ -1,0 +1,158 @@
+"""The rubble as a participant: fragments become blocks, blocks load the structure and the sheet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupling.handover import BlockBirth, births
+from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
+from coupling.structure import Structure
+from rubble.layer import Domain, RubbleLayer
+from rubble.outline import convex_parts
+from rubble.physics import RubblePhysics
+
+OUTLINE_TOLERANCE = 0.01  #: of the structure's cut by a section [m]
+SMALLEST = 1e-3  #: share of h^2 below which what is left of a trimmed block counts as crushed
+
+
+@dataclass(frozen=True)
+class HandOver:
+    """Balance of one fragment: what left the lattice and what arrived."""
+
+    blocks: int
+    mass: float  #: of the fragment, without what was crushed before [kg]
+    trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
+    momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
+
+
+class RubblePort:
+    """Sections of `rubble.layer`, fed with fragments and with the sheet's edge."""
+
+    def __init__(self, structure: Structure, physics: RubblePhysics, *, pitch: float, origin: float,
+                 columns_per_section: int, domain: Domain, threads: int = 1):
+        """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
+        bottom, top = max(structure.bottom, -domain.depth), structure.top
+
+        def solids(y: float) -> list[Array]:
+            outline = structure.section_outline(y, bottom, top, OUTLINE_TOLERANCE)
+            return convex_parts(outline, back=None if structure.revolved else float(outline[:, 0].max()) + 100.0)
+
+        def ratio(y: float, x: float, z: float) -> float:
+            return float(structure.lateral_ratio(y, x, z))
+
+        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, ratio=ratio, domain=domain,
+                                 threads=threads)
+        self.physics, self.columns_per_section = physics, columns_per_section
+        self._edges: dict[int, SheetEdge] = {}
+        self._forces = SheetForces.none()
+        self._fragments = 0
+
+    def add(self, fragment: Fragment) -> HandOver:
+        """Turns a fragment into blocks where and as it moves now."""
+        before, expected, trimmed, count = self.layer.momentum, np.zeros(3), 0.0, 0
+        for birth in births(fragment, self.columns_per_section):
+            mass = self._place(birth)
+            trimmed += birth.mass - mass
+            expected += mass * birth.velocity
+            count += mass > 0.0
+        self._fragments += 1
+        error = np.abs(self.layer.momentum - before - expected).max() / max(np.abs(expected).max(), 1e-9)
+        return HandOver(count, float(fragment.mass.sum()), trimmed, float(error) if count else 0.0)
+
+    def _place(self, b: BlockBirth) -> float:
+        """Puts one block into its section, outside the structure; returns its mass, 0 if nothing is left."""
+        key = self.layer.key_at(b.y)
+        polygon = self.layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
+        if len(polygon) < 3 or _area(polygon) < SMALLEST * self.physics.thickness**2:
+            return 0.0
+        number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
+                                      (b.velocity[0], b.velocity[2]), b.omega, b.y, self._fragments, b.angle)
+        block = next(b for b in self.layer.section(key).blocks if b.id == number)
+        block.v_y = float(b.velocity[1])
+        return float(block.mass)
+
+    def set_sheet(self, edges: dict[int, SheetEdge]) -> None:
+        """The sheet's edges for the coming window; only sections that hold blocks, or are next to one, need them."""
+        active = {k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)}
+        for key in set(self._edges) - (set(edges) & active):
+            self.layer.remove_sheet(key)
+        self._edges = {k: edges[k] for k in sorted(active) if k in edges}
+        for key, e in self._edges.items():
+            self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, self._carried(e))
+
+    def _carried(self, edge: SheetEdge) -> tuple[float, float]:
+        """The rubble's force that the sheet has already answered to, in x and z."""
+        on = np.isin(self._forces.nodes, edge.nodes)
+        total = self._forces.force[on].sum(axis=0)
+        return float(total[0]), float(total[2])
+
+    def advance(self, window_ns: int) -> None:
+        """Moves all blocks over a window and sums their impulses on the sheet."""
+        try:
+            self.layer.advance(round(window_ns / NS / self.physics.substep))
+        except RuntimeError as error:
+            raise SimulationError(str(error)) from error
+        nodes: list[IntArray] = [e.nodes for e in self._edges.values()]
+        forces = [self.layer.sheet_forces(key) for key in self._edges]
+        if nodes:
+            f = np.concatenate(forces)
+            on = np.flatnonzero(f.any(axis=1))
+            self._forces = SheetForces(np.concatenate(nodes)[on], np.column_stack((f[:, 0], 0.0 * f[:, 0], f[:, 1]))[on])
+        else:
+            self._forces = SheetForces.none()
+
+    def forces_on_sheet(self) -> SheetForces:
+        """Mean forces over the last window."""
+        return self._forces
+
+    def blocks(self) -> BlockTable:
+        t = self.layer.table()
+        return BlockTable(t.id, t.section, t.phase, t.mass, t.width, t.position, t.angle, t.velocity, t.omega, t.load,
+                          t.outline, t.offset)
+
+    def load(self) -> Array:
+        """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
+        t = self.layer.table()
+        return np.array([t.load[t.phase == phase].sum(axis=0) for phase in Phase]).reshape(3, 3)
+
+    @property
+    def mass(self) -> float:
+        return self.layer.mass
+
+    @property
+    def cleared_mass(self) -> float:
+        return self.layer.cleared_mass
+
+
+class NoRubble:
+    """Breaking only: fragments are taken away and counted as cleared."""
+
+    def __init__(self) -> None:
+        self.mass, self.cleared_mass = 0.0, 0.0
+
+    def add(self, fragment: Fragment) -> HandOver:
+        mass = float(fragment.mass.sum())
+        self.cleared_mass += mass
+        return HandOver(0, mass, 0.0, 0.0)
+
+    def set_sheet(self, edges: dict[int, SheetEdge]) -> None:
+        """Nothing is there to meet the sheet."""
+
+    def advance(self, window_ns: int) -> None:
+        """Nothing moves."""
+
+    def forces_on_sheet(self) -> SheetForces:
+        return SheetForces.none()
+
+    def blocks(self) -> BlockTable:
+        return BlockTable.empty()
+
+    def load(self) -> Array:
+        return np.zeros((3, 3))
+
+
+def _area(polygon: Array) -> float:
+    x, z = polygon.T
+    return 0.5 * abs(float(np.dot(x, np.roll(z, -1)) - np.dot(z, np.roll(x, -1))))

@@ -1,0 +1,228 @@
+"""The sheet as a participant: joins the lattice to the structure, hands out fragments and its edge to the rubble."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from coupling.contact import ContactLaw, OverlapContact
+from coupling.edge import CrushedEdge
+from coupling.interface import (
+    NS,
+    Array,
+    Event,
+    Fragment,
+    IntArray,
+    SheetEdge,
+    SheetForces,
+    SheetView,
+    SimulationError,
+)
+from coupling.structure import Structure
+from lattice.engine import StepError
+from lattice.sheet import Outcome, Sheet
+
+REACH = 30.0  #: length of sheet behind its edge that the rubble meets [m]
+
+
+@dataclass
+class SheetReport:
+    """What the sheet did in a window."""
+
+    load: Array  #: (3,) mean force of the sheet on the structure [N]
+    fragments: list[Fragment] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+
+
+class SheetPort:
+    """Lattice, edge contact and crushed edge of one floe that drifts along +x."""
+
+    def __init__(self, sheet: Sheet, structure: Structure, law: ContactLaw, velocity: float,
+                 columns_per_section: int = 1):
+        g, ice = sheet.grid, sheet.ice
+        self.sheet, self.velocity, self.columns_per_section = sheet, velocity, columns_per_section
+        self.contact = OverlapContact(structure, law, velocity, ice.h, ice.freeboard)
+        self.z_mid = ice.freeboard - 0.5 * ice.h  #: middle of the floating sheet [m]
+        y = g.y0 + np.arange(g.ny) * g.d
+        self.ice_y = y.copy()  #: middle of each column's ice [m]
+        self.ice_y[[0, -1]] += 0.25 * g.d * np.array([1.0, -1.0])
+        normal = structure.normal(self.ice_y, np.full(g.ny, ice.freeboard))
+        self.meets = np.isfinite(normal[:, 0]) & (normal[:, 0] < 0.0)  #: columns in whose way the structure stands
+        with np.errstate(invalid="ignore", divide="ignore"):
+            tan = np.where(self.meets, np.abs(normal[:, 0] / normal[:, 2]), 1.0)
+        self.edge = CrushedEdge((g.nx, g.ny), g.d, ice.h, tan)
+        self.initial_mass = ice.rho_i * ice.h * float(g.area.sum())
+        self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
+        self._t, self._quiet, self._last_load = 0.0, True, np.zeros(3)
+        self._renew_edge()
+
+    # ---- one window -------------------------------------------------------------------------------------------
+
+    def advance(self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array) -> SheetReport:
+        """Moves the sheet over a window under the rubble's mean forces; ``rubble_load`` (3,) is for the events only."""
+        self._t, self._fragments = t_ns / NS, []
+        n = self.sheet.grid.nodes
+        force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
+        force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
+        parts = self.sheet.parts
+        try:
+            out = self.sheet.advance(self._t, force_u, force_q, self.contact, self._release)
+        except (StepError, FloatingPointError) as error:
+            raise SimulationError(f"t = {self._t:.3f} s: {error}") from error
+        load = -out.contact_mean[:, :3].sum(axis=0) if len(out.contact_mean) else np.zeros(3)
+        self._t = (t_ns + window_ns) / NS
+        self._crush()
+        events = self._events(t_ns + window_ns, out, parts, self._last_load + rubble_load)
+        self._quiet, self._last_load = not out.failed, load
+        return SheetReport(load, self._fragments, events)
+
+    def _release(self, nodes: IntArray) -> None:
+        self._fragments.append(self._fragment(nodes))
+        self._renew_edge()
+
+    def _renew_edge(self) -> None:
+        """The nodes in front, after the lattice has lost some."""
+        g, front = self.sheet.grid, self.sheet.front
+        self.edge.set_front(front)
+        column = np.flatnonzero(self.meets & (front >= 0))
+        row = front[column]
+        nodes = row * g.ny + column
+        x_front = g.xy[nodes, 0] + self.edge.lead(row)
+        self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
+        self.front_column = column
+
+    def _crush(self) -> None:
+        """Takes the overlapped ice off the edge, and rows of which nothing is left out of the lattice."""
+        s = self.sheet.state
+        n = self.contact.nodes
+        if not len(n):
+            return
+        overlap, _ = self.contact.overlap(self._t, np.hstack((s.u[n], s.q[n])))
+        self.edge.crush(self.front_column, overlap)
+        spent = self.edge.spent()
+        if len(spent):
+            nodes = self.edge.front[spent] * self.sheet.grid.ny + spent
+            self.crushed_mass += float(self._ice_mass(nodes).sum())
+            self.sheet.retire(nodes)
+            self._renew_edge()
+
+    # ---- ice --------------------------------------------------------------------------------------------------
+
+    def _ice_mass(self, nodes: IntArray) -> Array:
+        """Mass of nodes without crushing [kg]."""
+        return self.sheet.ice.rho_i * self.sheet.ice.h * self.sheet.grid.area[nodes]
+
+    def _crushed(self, nodes: IntArray) -> Array:
+        """Mass crushed off nodes that are in the lattice [kg]."""
+        row, column = np.divmod(nodes, self.sheet.grid.ny)
+        return self.sheet.ice.rho_i * self.edge.width[column] * self.edge.crushed_area(row, column)
+
+    @property
+    def mass(self) -> float:
+        """Ice in the lattice, without what was crushed off its edge [kg]."""
+        n = np.flatnonzero(self.sheet.present)
+        return float((self._ice_mass(n) - self._crushed(n)).sum())
+
+    @property
+    def crushed(self) -> float:
+        """All ice crushed off the edge so far [kg]."""
+        return self.crushed_mass + float(self._crushed(np.flatnonzero(self.sheet.present)).sum())
+
+    def _fragment(self, nodes: IntArray) -> Fragment:
+        g, s = self.sheet.grid, self.sheet.state
+        row, column = np.divmod(nodes, g.ny)
+        crushed = self._crushed(nodes)
+        self.crushed_mass += float(crushed.sum())
+        position, velocity = self._position(nodes), np.empty((len(nodes), 3))
+        position[:, 1] += self.ice_y[column] - (g.y0 + column * g.d)
+        velocity[:, :2], velocity[:, 2] = s.u_dot[nodes] + (self.velocity, 0.0), s.q_dot[nodes, 0]
+        return Fragment(
+            row=g.nx - 1 - row, column=column, mass=self._ice_mass(nodes) - crushed, length=self.edge.length(row),
+            width=self.edge.width[column], lead=self.edge.lead(row), position=position, velocity=velocity,
+            tilt=s.q[nodes, 1].copy(), tilt_rate=s.q_dot[nodes, 1].copy(), cut=self.edge.cut(row, column),
+            cut_tan=self.edge.tan[column], cut_face=self.contact.face, thickness=self.sheet.ice.h)
+
+    def _position(self, nodes: IntArray) -> Array:
+        s = self.sheet.state
+        x, y = self.sheet.grid.xy[nodes].T
+        return np.column_stack((x + self.velocity * self._t + s.u[nodes, 0], y + s.u[nodes, 1],
+                                self.z_mid + s.q[nodes, 0]))
+
+    # ---- what others see --------------------------------------------------------------------------------------
+
+    def edges(self) -> dict[int, SheetEdge]:
+        """The sheet's edge and underside per section, as the rubble meets it in the coming window."""
+        found = {}
+        for key in range(-(-self.sheet.grid.ny // self.columns_per_section)):
+            columns = np.arange(key * self.columns_per_section,
+                                min((key + 1) * self.columns_per_section, self.sheet.grid.ny))
+            column = int(columns[np.argmax(self.edge.front[columns])])
+            if self.edge.front[column] >= 0:
+                found[key] = self._edge(column)
+        return found
+
+    def _edge(self, column: int) -> SheetEdge:
+        g, s, front = self.sheet.grid, self.sheet.state, int(self.edge.front[column])
+        rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
+        present = self.sheet.present[rows * g.ny + column]
+        rows = rows[: int(np.argmin(present))] if not present.all() else rows
+        nodes = rows * g.ny + column
+        position = self._position(nodes)
+        velocity = np.column_stack((s.u_dot[nodes, 0] + self.velocity, s.q_dot[nodes, 0]))
+        lead = float(self.edge.lead(rows[:1])[0])
+        return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity,
+                         self.sheet.ice.h, nodes, self._stiffness(column))
+
+    def _stiffness(self, column: int) -> tuple[float, float]:
+        """Stiffness of the edge at a column: of its own node, or of the nearest one in the structure's way."""
+        if not len(self.front_column):
+            column = int(np.flatnonzero(self.edge.front >= 0)[0])
+            return self.sheet.engine.point_stiffness(np.array([self.edge.front[column] * self.sheet.grid.ny + column]))[0]
+        k = self.sheet.engine.point_stiffness(self.contact.nodes)
+        return k[int(np.argmin(np.abs(self.front_column - column)))]
+
+    def view(self) -> SheetView:
+        """Positions, damage and utilisation for observers."""
+        g, live = self.sheet.grid, self.sheet.live_cells
+        corner = g.cell_nodes.ravel()
+        cells = np.bincount(corner, minlength=g.nodes)
+        intact = np.bincount(corner, weights=np.repeat(self.sheet.intact, 4), minlength=g.nodes)
+        utilisation = np.zeros(g.nodes)
+        np.maximum.at(utilisation, corner, np.repeat(np.where(live, self.sheet.utilisation, 0.0), 4))
+        return SheetView(self._position(np.arange(g.nodes)), 1.0 - intact / cells, utilisation,
+                         self.sheet.present.copy(), live, (g.nx, g.ny), (g.nx - 1, g.ny - 1))
+
+    # ---- events -----------------------------------------------------------------------------------------------
+
+    def _events(self, t_ns: int, out: Outcome, parts_before: int, load: Array) -> list[Event]:
+        """Events of a window, with the load that the structure carried before it."""
+        events = []
+        if out.failed and self._quiet:
+            where = self._cells_centre(out.failed)
+            events.append(self._event(t_ns, "cell_failure", load, len(out.failed), where, "ice begins to fail"))
+        if out.parts > parts_before:
+            text = f"the floe splits, {out.parts} parts stay in the lattice"
+            events.append(self._event(t_ns, "split", load, len(out.failed), self._cells_centre(out.failed), text))
+        for piece, fragment in zip(out.pieces, self._fragments, strict=True):
+            events += self._piece_events(t_ns, load, len(out.failed), piece, fragment)
+        return events
+
+    def _piece_events(self, t_ns: int, load: Array, cells: int, piece: IntArray, f: Fragment) -> list[Event]:
+        where = np.average(f.position, axis=0, weights=f.length * f.width)
+        size = f"{f.length[f.column == f.column[0]].sum():.1f} m"
+        area = float((f.length * f.width).sum())
+        text = f"a piece of {area:.0f} m2 and {f.mass.sum() / 1e3:.0f} t"
+        events = []
+        if f.row.min() == 0 or self.meets[piece % self.sheet.grid.ny].any():
+            events.append(self._event(t_ns, "circumferential", load, cells, where, f"{text} breaks off ({size} long)"))
+        return [*events, self._event(t_ns, "hand_over", load, cells, where, f"{text} becomes rubble")]
+
+    def _cells_centre(self, cells: list[int]) -> Array:
+        corners = self.sheet.grid.cell_nodes[cells].ravel()
+        return self._position(corners).mean(axis=0)
+
+    def _event(self, t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str) -> Event:
+        force = (float(load[0]), float(load[1]), float(load[2]))
+        place = (float(where[0]), float(where[1]), float(where[2]))
+        return Event(t_ns, kind, force, cells, place, text)
