@@ -7,6 +7,7 @@ Inside the program every number is SI, so this is the only file that knows other
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -42,13 +43,15 @@ def to_si(value: object, unit: Unit) -> float:
     except Exception:
         raise _fault(f'wrong unit, this quantity is measured in {unit.si}: for example "{unit.example}"') from None
     if not math.isfinite(magnitude):
-        raise _fault(f'not a finite number: for example "{unit.example}"')
+        raise _fault(f'not a finite number; for example "{unit.example}"')
     return magnitude
 
 
 def _parse(text: str, unit: Unit) -> Any:
     """The pint quantity of a text; a text without unit, or with an unknown one, is refused."""
     remedy = f'write number and unit, for example "{unit.example}"'
+    if not re.match(r"\s*[-+]?\.?(\d|nan|inf)", text):
+        raise _fault(f"not a quantity; {remedy}")
     try:
         quantity = _registry().Quantity(text)
         has_unit = bool(quantity._units)

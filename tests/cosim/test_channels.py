@@ -1,0 +1,115 @@
+"""Bytes packed from arrays are what the official protobuf classes read."""
+
+import numpy as np
+import pytest
+from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+
+from cosim import channels, messages, pictures, scenes, shapes
+from cosim.scenario import load_scenario
+from coupling.interface import BlockTable, Event
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return load_scenario("van_vliet_2018_floe_165m", ["sheet.nodes=[40,40]"])
+
+
+def test_triangles_are_read_back_bit_by_bit():
+    rng = np.random.default_rng(3)
+    xyz, faces, rgb = rng.normal(size=(5, 3)), np.array([[0, 1, 2], [2, 3, 4]]), rng.integers(0, 255, (5, 3)) * 1.0
+    data = scenes.scene(1_500_000_000, "thing", [scenes.triangle_list(xyz, faces, rgb)])
+    (entity,) = SceneUpdate.FromString(data).entities
+    (triangles,) = entity.triangles
+    assert (entity.id, entity.frame_id) == ("thing", "world")
+    assert (entity.timestamp.seconds, entity.timestamp.nanos) == (1, 5 * 10**8)
+    assert np.array_equal([(p.x, p.y, p.z) for p in triangles.points], xyz)
+    assert np.array_equal([(c.r, c.g, c.b, c.a) for c in triangles.colors], np.column_stack([rgb / 255, np.ones(5)]))
+    assert list(triangles.indices) == faces.ravel().tolist()
+
+
+def test_nested_messages_are_set_also_at_zero(scenario, synthetic):
+    """rerun turns an unset nested message into a null."""
+    (entity,) = SceneUpdate.FromString(channels.rubble_scene(0, BlockTable.empty())).entities
+    assert entity.HasField("timestamp") and entity.HasField("lifetime")
+    assert all(item.HasField("pose") and item.HasField("color") for item in entity.triangles)
+    cloud = PointCloud.FromString(channels.nodes(0, synthetic.sheet(scenario, 0.0)))
+    assert cloud.HasField("timestamp") and cloud.HasField("pose") and cloud.pose.HasField("position")
+
+
+def test_load_holds_totals_and_phases():
+    by_phase = np.arange(9.0).reshape(3, 3) + 1
+    topic, data = channels.load(2_000_000_001, by_phase)
+    message = messages.Load.FromString(data)
+    assert (topic, message.stamp.seconds, message.stamp.nanos) == ("/load/structure", 2, 1)
+    assert (message.fx, message.fy, message.fz) == (12.0, 15.0, 18.0)
+    assert (message.breaking_fx, message.rotating_fy, message.sliding_fz) == (1.0, 5.0, 9.0)
+
+
+def test_an_event_is_data_and_a_line():
+    item = Event(10**9, "split", (1.0, 2.0, 3.0), 7, (4.0, 5.0, 6.0), "two parts")
+    (first, data), (second, line) = channels.event(item)
+    message = messages.Event.FromString(data)
+    assert (first, message.kind, message.fz, message.cells, message.y) == ("/events", "split", 3.0, 7, 5.0)
+    assert second == "/log" and channels.SCHEMAS["/log"].FromString(line).message == "split: two parts"
+
+
+def test_nodes_that_left_the_lattice_are_not_drawn(scenario, synthetic):
+    sheet = synthetic.sheet(scenario, 8.0)
+    records = pictures.node_records(channels.nodes(0, sheet))
+    assert len(records) == sheet.present.sum() < len(sheet.present)
+    assert np.allclose(records["x"], sheet.position[records["node"], 0], rtol=1e-6)
+    assert np.array_equal(records["damage"], sheet.damage[sheet.present].astype("f4"))
+
+
+def test_the_mesh_of_the_sheet_gives_its_cells_back(scenario, synthetic):
+    sheet = synthetic.sheet(scenario, 8.0)
+    quads = pictures.sheet_quads(channels.sheet_scene(0, sheet, 3.0))
+    assert len(quads) == sheet.intact.sum()
+    expected = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
+    assert np.array_equal(quads, expected)
+
+
+def closed_volume(points, faces):
+    """Volume by the divergence theorem: right only if the surface is closed and its normals point out."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
+
+
+@pytest.mark.parametrize("t", [0.0, 8.0])
+def test_the_solid_sheet_is_closed(scenario, synthetic, t):
+    sheet, d, h = synthetic.sheet(scenario, t), scenario.sheet.spacing, 3.0
+    quads = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
+    vertices, faces, node = shapes.solid_sheet(sheet.position, quads, h)
+    assert closed_volume(vertices, faces) == pytest.approx(sheet.intact.sum() * d * d * h, rel=1e-9)
+    assert len(node) == len(vertices)
+
+
+def test_prisms_are_closed_and_hold_the_blocks(scenario, synthetic):
+    blocks = synthetic.blocks(scenario, 8.0)
+    points, faces, owner = shapes.prisms(blocks)
+    assert closed_volume(points, faces) == pytest.approx(blocks.count * 7 * 3 * 5.2, rel=1e-9)
+    assert np.array_equal(np.bincount(owner), np.full(blocks.count, 12))
+
+
+def test_outline_points_lie_on_the_blocks_and_are_dense(scenario, synthetic):
+    blocks = synthetic.blocks(scenario, 8.0)
+    edges, block = shapes.prism_edges(blocks)
+    points, edge = shapes.along_edges(shapes.prisms(blocks)[0], edges, 0.6)
+    assert np.bincount(block[edge]).min() > 60
+    first = points[block[edge] == 0]
+    assert np.linalg.norm(first - blocks.position[0], axis=1).max() <= np.hypot(np.hypot(3.5, 1.5), 2.6) * (1 + 1e-9)
+
+
+def test_no_blocks_and_no_cells_are_pictures_too(scenario, synthetic):
+    empty = BlockTable.empty()
+    assert len(shapes.prisms(empty)[0]) == 0 and channels.rubble_outline(0, empty, 0.5)
+    vertices, faces, _ = shapes.solid_sheet(np.zeros((9, 3)), np.empty((0, 4), np.int64), 3.0)
+    assert (len(vertices), len(faces)) == (18, 0)
+    gone = pictures.sheet_quads(scenes.scene(0, "sheet", [scenes.triangle_list(vertices, faces, np.zeros((18, 3)))]))
+    assert gone.shape == (0, 4)
+
+
+def test_colours_go_from_ice_to_red():
+    low, high, cracked = shapes.ice_colour(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
+    assert low[2] > low[0] and high[0] > 4 * high[2] and cracked.sum() < low.sum() / 3

@@ -1,0 +1,124 @@
+"""A run is written and read back; a killed one is recovered; the bits depend on the scenario alone."""
+
+import numpy as np
+import pytest
+
+from cosim.recording import RecordingError, messages, read_run, recover
+from cosim.scenario import load_scenario
+
+WINDOWS = 240  # 12 s of 50 ms
+
+
+def test_round_trip(run_file, synthetic):
+    run = read_run(run_file)
+    assert len(run.t_ns) == WINDOWS and run.t_ns[-1] == 12 * 10**9
+    expected = np.array([synthetic.load(t) for t in run.t])
+    assert np.array_equal(run.load, expected)
+    assert [(e.kind, e.t_ns, e.cells) for e in run.events] == [
+        ("split", 4 * 10**9, 24), ("circumferential", 6 * 10**9, 31), ("hand_over", 6 * 10**9, 0)]
+    assert run.events[0].force == pytest.approx(tuple(synthetic.load(4.0).sum(axis=0)), rel=1e-15)
+    assert np.array_equal(run.ledger["energy_residual"], 2.0 * run.t)
+
+
+def test_components(run_file):
+    run = read_run(run_file)
+    assert np.allclose(run.component("fx"), run.load[:, :, 0].sum(axis=1), rtol=1e-15)
+    assert np.allclose(run.component("f", "sliding"), np.linalg.norm(run.load[:, 2], axis=1), rtol=1e-15)
+
+
+def test_scenario_and_run_data_travel_along(run_file, tmp_path):
+    run = read_run(run_file)
+    copy = tmp_path / "copy.toml"
+    copy.write_text(run.texts["scenario.toml"])
+    original = load_scenario("van_vliet_2018_floe_165m", run.overrides)
+    assert load_scenario(copy).model == original.model
+    assert run.texts["scenario.as-written.toml"] == original.text
+    assert "feature" in run.texts["reference.toml"]
+    assert (run.metadata["seed"], run.metadata["nodes"]) == ("2018", "[40, 40]")
+
+
+def test_pictures_come_every_so_often_and_at_events(run_file):
+    times = {topic: [t for _, t, _ in messages(run_file, [topic])] for topic in ("/ice/nodes", "/ice/sheet", "/tf")}
+    half_seconds = {k * 5 * 10**8 for k in range(1, 25)}
+    assert half_seconds | {5 * 10**7} == set(times["/ice/nodes"])
+    assert set(times["/ice/sheet"]) < set(times["/ice/nodes"]) and times["/tf"] == [0]
+
+
+def test_same_scenario_same_bits(run_file, record, tmp_path):
+    again = record(tmp_path / "elsewhere.mcap")
+    assert again.read_bytes() == run_file.read_bytes()
+
+
+def test_another_seed_gives_other_bits(run_file, record, tmp_path):
+    other = record(tmp_path / "other.mcap", ("scenario.duration='12 s'", "sheet.nodes=[40,40]", "scenario.seed=1"))
+    assert other.read_bytes() != run_file.read_bytes()
+
+
+def test_nothing_of_the_machine_is_written(run_file):
+    data = run_file.read_bytes()
+    assert b"/work/" not in data and str(run_file.parent).encode() not in data
+
+
+@pytest.fixture
+def truncated(run_file, tmp_path):
+    def cut(share):
+        data = run_file.read_bytes()
+        path = tmp_path / "killed.mcap"
+        path.write_bytes(data[:int(len(data) * share)])
+        return path
+    return cut
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.97])
+def test_a_truncated_recording_is_refused_and_recovered(truncated, run_file, tmp_path, share):
+    path = truncated(share)
+    with pytest.raises(RecordingError, match=r"truncated.*cosim recover"):
+        read_run(path)
+    rescued = recover(path, tmp_path / "clean.mcap")
+    clean, whole = read_run(tmp_path / "clean.mcap"), read_run(run_file)
+    n = len(clean.t_ns)
+    assert n == len(rescued.t_ns) > 0.5 * share * WINDOWS
+    assert np.array_equal(clean.load, whole.load[:n]) and clean.metadata == whole.metadata
+    assert clean.texts == whole.texts
+    assert list(messages(tmp_path / "clean.mcap", ["/ice/nodes"]))
+
+
+def test_every_byte_that_is_missing_is_noticed(truncated, run_file):
+    size = len(run_file.read_bytes())
+    for missing in (1, 9, 200):
+        with pytest.raises(RecordingError, match="truncated"):
+            read_run(truncated((size - missing) / size))
+
+
+def test_a_flipped_byte_is_noticed(run_file, tmp_path):
+    data = bytearray(run_file.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    (tmp_path / "flipped.mcap").write_bytes(data)
+    with pytest.raises(RecordingError, match="damaged"):
+        read_run(tmp_path / "flipped.mcap")
+
+
+def test_nothing_to_recover(truncated, tmp_path):
+    for share in (0.0005, 0.001):
+        with pytest.raises(RecordingError, match=r"not a recording of cosim|holds no data|not an MCAP"):
+            recover(truncated(share), tmp_path / "out.mcap")
+    assert not (tmp_path / "out.mcap").exists()
+
+
+def test_recovery_does_not_overwrite_its_source(run_file):
+    with pytest.raises(RecordingError, match="does not overwrite"):
+        recover(run_file, run_file)
+
+
+def test_foreign_files(tmp_path):
+    foreign = tmp_path / "x.mcap"
+    foreign.write_text("hello, this is text")
+    with pytest.raises(RecordingError, match="not an MCAP recording"):
+        read_run(foreign)
+    with pytest.raises(RecordingError, match="no such recording"):
+        read_run(tmp_path / "none.mcap")
+
+
+def test_a_run_that_stops_early_is_a_complete_file(record, tmp_path):
+    run = read_run(record(tmp_path / "short.mcap", stop_after=7))
+    assert len(run.t_ns) == 7

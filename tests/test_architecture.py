@@ -1,0 +1,82 @@
+"""Imports point one way. Read from the source with ast, so that an import inside a function counts too."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("cosim", "coupling", "lattice", "rubble")
+#: package -> packages of ours that it may import; the two ports are the exception below
+ALLOWED = {
+    "lattice": {"lattice"},
+    "rubble": {"rubble"},
+    "coupling": {"coupling"},
+    "cosim": {"cosim", "coupling", "lattice", "rubble"},
+}
+PORTS = {"coupling/sheet_port.py": {"lattice"}, "coupling/rubble_port.py": {"rubble"}}
+#: library -> the only files that may import it
+LIBRARIES = {
+    "mcap": {"cosim/recording.py", "cosim/replay.py"},
+    "mcap_protobuf": {"cosim/recording.py", "cosim/replay.py"},
+    "rerun": {"cosim/replay.py"},
+    "rerun_cli": {"cosim/replay.py"},
+}
+SOLVER_LIBRARIES = {"pymunk": "rubble", "typer": "cosim", "rich": "cosim", "pydantic": "cosim", "pint": "cosim"}
+SOURCES = sorted(file for package in PACKAGES for file in (ROOT / package).rglob("*.py"))
+
+
+def imported(source: str) -> set[str]:
+    """Dotted names of everything that a source imports, also ``from a import b`` as ``a.b``."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return names
+
+
+def roots(source: str) -> set[str]:
+    return {name.split(".")[0] for name in imported(source)}
+
+
+def forbidden(path: str, source: str) -> set[str]:
+    """What a file of ours imports against the rules."""
+    used, package = roots(source), path.split("/")[0]
+    allowed = ALLOWED[package] | PORTS.get(path, set())
+    bad = {name for name in used & set(PACKAGES) if name not in allowed}
+    bad |= {name for name, files in LIBRARIES.items() if name in used and path not in files}
+    return bad | {name for name, home in SOLVER_LIBRARIES.items() if name in used and package != home}
+
+
+@pytest.mark.parametrize("file", SOURCES, ids=lambda f: str(f.relative_to(ROOT)))
+def test_imports_point_one_way(file):
+    assert not forbidden(file.relative_to(ROOT).as_posix(), file.read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize(("path", "source"), [
+    ("lattice/engine.py", "import rubble.section"),
+    ("lattice/engine.py", "from coupling.interface import Frame"),
+    ("rubble/layer.py", "def f():\n    from lattice import sheet"),
+    ("coupling/scheduler.py", "import lattice"),
+    ("coupling/sheet_port.py", "import rubble"),
+    ("cosim/compare.py", "import mcap.reader"),
+    ("cosim/cli.py", "def f():\n    import rerun as rr"),
+    ("lattice/engine.py", "import pymunk"),
+])
+def test_a_wrong_import_is_found(path, source):
+    assert forbidden(path, source)
+
+
+def test_only_the_command_line_exits():
+    for file in SOURCES:
+        text = file.read_text(encoding="utf-8")
+        if file.name != "cli.py":
+            assert "SystemExit" not in text and "sys.exit" not in text, file
+
+
+def test_tests_have_no_packages():
+    assert not list((ROOT / "tests").rglob("__init__.py"))
