@@ -29,6 +29,19 @@ def side_step(block: Block, physics: RubblePhysics, force: float, friction: floa
     block.y += dt * block.v_y
 
 
+def push(block: Block, neighbour: Block | None) -> None:
+    """Plastic impact across: both blocks go on with their common speed; without a neighbour the block stops.
+
+    Momentum across is kept between blocks; sheet and structure take it up.
+    """
+    if neighbour is None:
+        block.v_y = 0.0
+        return
+    m, n = float(block.body.mass), float(neighbour.body.mass)
+    if (block.y - neighbour.y) * (block.v_y - neighbour.v_y) < 0.0:  # they approach each other
+        block.v_y = neighbour.v_y = (m * block.v_y + n * neighbour.v_y) / (m + n)
+
+
 def side_drag(block: Block, physics: RubblePhysics) -> float:
     """rho_w/2 C_d times the submerged side face: drag over v_y |v_y| [kg/m]."""
     (x, z), angle = block.body.position, block.body.angle

@@ -2,9 +2,9 @@
 
 Section ``key`` is the slice ``|y - (origin + key pitch)| <= pitch / 2``; it comes to be when first used. In a window
 sections do not know of each other, so threads change no bit of the result. Between windows blocks move sideways
-(`lateral`); one that crosses into the next section goes there with its motion, if there is room for it, and otherwise
-waits at the border, held by the ice next door. Nothing is deleted: blocks that have passed the structure or left the
-domain are counted as cleared, with their mass and momentum.
+(`lateral`); one that crosses into the next section goes there with its motion, if there is room for it. Otherwise it
+waits at the border and pushes the ice next door (plastic impact: both go on with their common speed). Nothing is
+deleted: blocks that have passed the structure or left the domain are counted as cleared, with mass and momentum.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 from rubble.block import ROTATING, SLIDING, Block, make_block
 from rubble.contacts import IntArray
 from rubble.geometry import Array, moments, place, submerged
-from rubble.lateral import side_step
+from rubble.lateral import push, side_step
 from rubble.physics import RubblePhysics
 from rubble.section import Section
 
@@ -194,11 +194,13 @@ class RubbleLayer:
             return
         new = self.section(key + (1 if step > 0 else -1))
         room = 0.05 * self.physics.thickness  # overlap that the contact solver takes out without a push
-        if new.depth_of(block) <= room:
+        depth, neighbour = new.in_the_way(block)
+        if depth <= room:
             section.take(block)
             new.adopt(block)
         else:
-            block.y, block.v_y = section.y + (0.5 if step > 0 else -0.5) * self.pitch * (1 - 1e-12), 0.0
+            block.y = section.y + (0.5 if step > 0 else -0.5) * self.pitch * (1 - 1e-12)
+            push(block, neighbour)
 
     def _clear(self, section: Section, block: Block) -> None:
         section.take(block)

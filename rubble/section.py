@@ -92,11 +92,16 @@ class Section:
         (x, z), angle = block.body.position, block.body.angle
         return overlap_area(place(block.polygon, x, z, angle, 0.0, 0.0), self.solids)
 
-    def depth_of(self, block: Block) -> float:
-        """How deep a block, in its present pose, would stand in what is here [m]; for a block of another section."""
+    def in_the_way(self, block: Block) -> tuple[float, Block | None]:
+        """What stands where a block of another section would be: how deep it would be in it [m], and the block it is.
+
+        None in place of the block for structure, sheet or free room.
+        """
         block.shape.cache_bb()
-        found = self.space.shape_query(block.shape)
-        return max((-p.distance for info in found for p in info.contact_point_set.points), default=0.0)
+        number: dict[pymunk.Shape | None, Block] = {b.shape: b for b in self.blocks}
+        found = [(max((-p.distance for p in info.contact_point_set.points), default=0.0), number.get(info.shape))
+                 for info in self.space.shape_query(block.shape) if info.shape is not None]
+        return max(found, key=lambda f: (f[0], f[1].id if f[1] else -1), default=(0.0, None))
 
     def take(self, block: Block) -> None:
         """Take a block out of the section."""

@@ -59,7 +59,7 @@ class SheetBody:
 
     def follow(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
                stiffness: tuple[float, float], applied: tuple[float, float]) -> None:
-        """Take over the lattice's position for a window. Only the driver jumps to it; the body follows on its spring."""
+        """Take over the lattice's position for a window. The driver jumps to it, the body follows on its spring."""
         self.driver[:] = x[0], z[0], *velocity.mean(axis=0)
         self._set_spring(np.array(stiffness, dtype=np.float64), applied)
         self.nodes = np.column_stack([x, z, np.zeros((len(x), 2))])

@@ -90,8 +90,8 @@ def apply_water(edges: Array, offset: IntArray, weight: Array, water: Array, row
     """Weight, buoyancy and drag of all blocks of a section, written to their rows of ``force`` (Fx, Fz, moment).
 
     Block i owns ``edges[offset[i]:offset[i + 1]]`` and stands in row ``row[i]`` of ``state``; ``weight`` in newtons;
-    ``water`` = (rho_w g, rho_w / 2, C_d, C_f, sub-step). ``work`` collects the energy lost to drag [J] and the impulse of
-    all these forces in x and z [N s].
+    ``water`` = (rho_w g, rho_w / 2, C_d, C_f, sub-step). ``work`` collects the energy lost to drag [J] and the
+    impulse of all these forces in x and z [N s].
     """
     out = np.empty(4)
     for i in range(row.shape[0]):

@@ -1,5 +1,7 @@
 """Profile, plane cuts and side force of cones and slopes."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -26,7 +28,7 @@ def test_section_outline_keeps_its_chord_error(y, tolerance):
     outline = CONE.section_outline(y, -30.0, 30.0, tolerance)
     assert outline[:, 0] == pytest.approx(CONE.face_x(y, outline[:, 1].clip(-20, 5)), abs=1e-6)
     assert (np.diff(outline[:, 1]) > 0).all()
-    for a, b in zip(outline[:-1], outline[1:], strict=True):
+    for a, b in pairwise(outline):
         if a[1] >= -10.0:  # on the cone r = 15 + z, so the cut is z = hypot(x, y) - 15; on the neck it is straight
             x = np.linspace(a[0], b[0], 41)
             off = (x - a[0]) * (b[1] - a[1]) - (np.hypot(x, y) - 15 - a[1]) * (b[0] - a[0])
@@ -51,10 +53,10 @@ def test_normal_is_a_unit_vector_across_the_surface():
 
 @pytest.mark.parametrize("y, z", [(6.0, -2.0), (-6.0, -2.0), (3.0, -12.0)])
 def test_side_force_follows_from_three_dimensional_statics(y, z):
-    """Ice presses with N along -n: the force on the structure is -N n, its share in the plane y has F_y / F_x = y / x."""
+    """Ice presses with N along -n: the force on the structure is -N n, so F_y / F_x = y / x."""
     force = -1000.0 * CONE.normal(y, z)
     x = float(CONE.face_x(y, z))
-    assert force[0] > 0 and force[2] > 0 or z < -10  # drift direction; a downward-breaking cone is lifted
+    assert force[0] > 0 and (force[2] > 0 or z < -10)  # drift direction; a downward-breaking cone is lifted
     assert CONE.lateral_ratio(y, x, z) * force[0] == pytest.approx(force[1], rel=1e-12)
     assert np.sign(force[1]) == -np.sign(y)  # the structure is pushed to the middle, the ice away from it
 

@@ -52,8 +52,8 @@ def test_submerged_part_of_a_tilted_box():
 
 
 def test_intersection_of_two_boxes():
-    assert moments(intersection(BOX, BOX + [1.0, 1.5]))[0] == pytest.approx(3 * 0.5, rel=1e-14)
-    assert moments(intersection(BOX, BOX + [5.0, 0.0]))[0] == 0.0
+    assert moments(intersection(BOX, BOX + np.array([1.0, 1.5])))[0] == pytest.approx(3 * 0.5, rel=1e-14)
+    assert moments(intersection(BOX, BOX + np.array([5.0, 0.0])))[0] == 0.0
 
 
 def test_cut_away_by_a_slope_is_exact():
