@@ -86,25 +86,27 @@ class ContactReader:
     """Reads all contact points of a space after a step."""
 
     def __init__(self, capacity: int = 256) -> None:
-        self._header = np.zeros(15, np.int64)
-        self._header[4:] = _offsets()
+        #: see `_read_arbiter`; 15 and 16 are the addresses of callback and header, for the compiled loop
+        self.header = np.zeros(17, np.int64)
+        self.header[4:15] = _offsets()
+        self.header[15], self.header[16] = int(_read_arbiter.address or 0), self.header.ctypes.data
         self._call = ffi.cast("void (*)(cpArbiter *, void *)", _read_arbiter.address)
         self._allocate(capacity)
 
     def _allocate(self, capacity: int) -> None:
         self.bodies = np.zeros((capacity, 2), np.int64)
         self.values = np.zeros((capacity, CONTACT_COLUMNS))
-        self._header[1:4] = capacity, self.bodies.ctypes.data, self.values.ctypes.data
-        self._data = ffi.cast("void *", self._header.ctypes.data)
+        self.header[1:4] = capacity, self.bodies.ctypes.data, self.values.ctypes.data
+        self._data = ffi.cast("void *", self.header.ctypes.data)
 
     def read(self, space: Any) -> int:
         """Fill ``bodies`` (addresses) and ``values``; returns the number of contact points."""
-        self._header[0] = 0
+        self.header[0] = 0
         lib.cpSpaceEachCachedArbiter(space._space, self._call, self._data)
-        if self._header[0] > self._header[1]:
-            self._allocate(2 * int(self._header[0]))
+        if self.header[0] > self.header[1]:
+            self._allocate(2 * int(self.header[0]))
             return self.read(space)
-        return int(self._header[0])
+        return int(self.header[0])
 
 
 @njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True)

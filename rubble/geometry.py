@@ -91,18 +91,20 @@ def place(polygon: Array, x: float, z: float, angle: float, dx: float, dz: float
     return out
 
 
-@njit(f"float64[::1]({POLYGON}, float64, float64)", cache=True, nogil=True)
-def nearest_edge(edges: Array, x: float, z: float) -> Array:
-    """Distance [m] from the point to the nearest of (e, 4) edges (x0, z0, x1, z1), and that edge's angle [rad]."""
-    best, angle = np.inf, 0.0
-    for e in range(edges.shape[0]):
-        ex, ez = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
-        s = ((x - edges[e, 0]) * ex + (z - edges[e, 1]) * ez) / (ex * ex + ez * ez)
-        s = min(1.0, max(0.0, s))
-        d = np.hypot(x - edges[e, 0] - s * ex, z - edges[e, 1] - s * ez)
-        if d < best:
-            best, angle = d, np.arctan2(ez, ex)
-    return np.array([best, angle])
+@njit(f"float64[::1]({POLYGON}, {POLYGON})", cache=True, nogil=True)
+def nearest_angles(edges: Array, points: Array) -> Array:
+    """Angle [rad] of that one of (e, 4) edges (x0, z0, x1, z1) that is nearest to each of the points (n, >= 2)."""
+    angles = np.empty(points.shape[0])
+    for i in range(points.shape[0]):
+        best, x, z = np.inf, points[i, 0], points[i, 1]
+        for e in range(edges.shape[0]):
+            ex, ez = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
+            s = ((x - edges[e, 0]) * ex + (z - edges[e, 1]) * ez) / (ex * ex + ez * ez)
+            s = min(1.0, max(0.0, s))
+            d = np.hypot(x - edges[e, 0] - s * ex, z - edges[e, 1] - s * ez)
+            if d < best:
+                best, angles[i] = d, np.arctan2(ez, ex)
+    return angles
 
 
 def contiguous(polygon: object) -> Array:

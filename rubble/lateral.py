@@ -20,12 +20,14 @@ def side_step(block: Block, physics: RubblePhysics, force: float, friction: floa
 
     Backward Euler for friction and drag, so neither turns the motion around.
     """
+    if force == 0.0 and block.v_y == 0.0:
+        return
     mass = float(block.body.mass)
     v = block.v_y + dt * force / mass
     speed = hypot(v, slip)
     if speed > 0.0:
         v *= max(0.0, 1.0 - dt * friction / (mass * speed))
-    block.v_y = v / (1.0 + dt * side_drag(block, physics) * abs(v) / mass)
+    block.v_y = 0.0 if v == 0.0 else v / (1.0 + dt * side_drag(block, physics) * abs(v) / mass)
     block.y += dt * block.v_y
 
 

@@ -84,7 +84,7 @@ class RubbleLayer:
         self.cleared_mass = 0.0  #: [kg]
         self.cleared_momentum = np.zeros(3)  #: true mass times velocity at leaving [N s]
         self.time = 0.0  #: [s]
-        self._loads: dict[int, Array] = {}
+        self._loads: dict[int, tuple[float, float, float]] = {}
         self._window = 0.0
         self._next = 0
         self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
@@ -157,36 +157,38 @@ class RubbleLayer:
         for section in self.sections.values():
             self._after_window(section)
         for key, section in list(self.sections.items()):
-            for block in list(section.blocks):
-                self._relocate(key, section, block)
+            places = section.state[:, :2].tolist()
+            for block, (x, z) in zip(list(section.blocks), places, strict=True):
+                self._relocate(key, section, block, x, z)
 
     def _after_window(self, section: Section) -> None:
         """Mean loads, phases and side steps of the blocks of one section."""
         dt = self._window
-        for block, state, sums in zip(section.blocks, section.state, section.sums, strict=True):
-            if not np.isfinite(state).all():
-                raise RuntimeError(f"block {block.id} in the section at y = {section.y:g} m, t = {self.time:g} s: "
-                                   "its motion is not finite; shorten rubble.substep")
+        if not np.isfinite(section.state).all():
+            lost = section.blocks[int(np.argmin(np.isfinite(section.state).all(axis=1)))].id
+            raise RuntimeError(f"block {lost} in the section at y = {section.y:g} m, t = {self.time:g} s: its motion "
+                               "is not finite; shorten rubble.substep")
+        rows = zip(section.blocks, section.state.tolist(), section.sums.tolist(), section.slope_angles().tolist(),
+                   strict=True)
+        for block, state, sums, slope in rows:
             ratio = self.ratio(block.y, sums[5] / sums[3], sums[6] / sums[3]) if sums[3] > 0 else 0.0
             side = ratio * sums[2] / dt if isfinite(ratio) else 0.0
-            self._loads[block.id] = np.array([sums[0] / dt, side, sums[1] / dt])
-            self._update_phase(section, block, state, touches_sheet=sums[7] > 0)
+            self._loads[block.id] = (sums[0] / dt, side, sums[1] / dt)
+            self._update_phase(block, block.long_axis + state[2] - slope, touches_sheet=sums[7] > 0)
             grip = (self.physics.mu_structure * sums[3] + self.physics.mu_ice_ice * sums[4]) / dt
             side_step(block, self.physics, -side, grip, hypot(state[3], state[4]), dt)
 
-    def _update_phase(self, section: Section, block: Block, state: Array, *, touches_sheet: bool) -> None:
+    def _update_phase(self, block: Block, turn: float, *, touches_sheet: bool) -> None:
         """Rotating until the long axis has once aligned with the nearest slope and has left the sheet; then sliding."""
         if block.phase == SLIDING:
             return
         if not block.aligned:
-            turn = block.long_axis + state[2] - section.slope_at(state[0], state[1])
             period = pi if block.slender else pi / 2
             block.aligned = bool(abs((turn + period / 2) % period - period / 2) <= self.physics.align_tolerance)
         block.phase = SLIDING if block.aligned and not touches_sheet else ROTATING
 
-    def _relocate(self, key: int, section: Section, block: Block) -> None:
+    def _relocate(self, key: int, section: Section, block: Block, x: float, z: float) -> None:
         """Count a block as cleared, or hand it to the section that it has moved into if there is room."""
-        x, z = block.body.position
         if not self.domain.holds(x, block.y, z):
             self._clear(section, block)
             return
@@ -276,7 +278,7 @@ class RubbleLayer:
         return total
 
 
-_NOTHING = np.zeros(3)
+_NOTHING = (0.0, 0.0, 0.0)
 
 
 def _ints(values: object) -> IntArray:

@@ -16,10 +16,11 @@ from pymunk._chipmunk_cffi import ffi
 
 from rubble.block import Block
 from rubble.contacts import SHEET, STRUCTURE, SUM_COLUMNS, ContactReader, IntArray, accumulate
-from rubble.geometry import Array, contiguous, cut_away, exposed_edges, nearest_edge, overlap_area, place
+from rubble.geometry import Array, contiguous, cut_away, exposed_edges, nearest_angles, overlap_area, place
 from rubble.physics import RubblePhysics
-from rubble.sheet import STRUCTURE_CATEGORY, SheetBody, spring_force
-from rubble.water import EDGE_COLUMNS, STATE_COLUMNS, apply_water
+from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
+from rubble.stepping import Calls, run
+from rubble.water import EDGE_COLUMNS, STATE_COLUMNS
 
 _F = batch.BodyFields
 _GET = _F.BODY_ID | _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY
@@ -157,6 +158,7 @@ class Section:
             self._sheet_row = row[self.sheet.body.id] if self.sheet is not None else -1
             self._force = np.zeros((len(order), 3))
             self._out.set_float_buf(self._force)
+            self._calls = Calls(self.space, self._buffer, _GET, self._out, _SET)
         return np.frombuffer(self._buffer.float_buf(), np.float64).reshape(-1, STATE_COLUMNS)
 
     def advance(self, n_substeps: int) -> None:
@@ -167,36 +169,35 @@ class Section:
             self.sheet.nodes[:, 2:] = 0.0
         if not self.blocks and self.sheet is None:
             return
-        for _ in range(n_substeps):
-            self._substep()
-        state = self._read_state()
-        self.state = state[self._row]
+        done = 0
+        while done < n_substeps:
+            done += self._run(n_substeps - done)
+        self.state = self._read_state()[self._row]
 
-    def _substep(self) -> None:
-        dt, state = self.physics.substep, self._read_state()
-        apply_water(self._edges, self._offset, self._weight, self._water, self._row, state, self._force, self.losses)
-        nodes = _NO_NODES
-        if self.sheet is not None:
-            row = self._sheet_row
-            spring_force(self.sheet.spring, dt, self.sheet.driver, state[row], self._force[row])
-            nodes = self.sheet.nodes
-        batch.set_space_bodies(self.space, _SET, self._out)
-        self.space.step(dt)
-        count = self._reader.read(self.space)
-        if count == 0:
-            return
-        if self.sheet is not None:
-            self.sheet_sums[:4] = *self.sheet.body.position, *self.sheet.body.velocity
-        if accumulate(count, self._reader.bodies, self._reader.values, self._addresses, self._slots, self.sheet_sums,
-                      self.sums, nodes):
+    def _run(self, n: int) -> int:
+        """Up to ``n`` sub-steps in one compiled call; fewer if the table of contacts had to grow. Returns how many."""
+        state, reader, sheet = self._read_state(), self._reader, self.sheet
+        spring, driver, nodes = (sheet.spring, sheet.driver, sheet.nodes) if sheet else (_NO, _NO, _NO_NODES)
+        self.space._bodies_to_check.clear()  # masses are positive by construction
+        done = run(n, self.physics.substep, self._calls.table, reader.header, state, self._force, self._row,
+                   self._edges, self._offset, self._weight, self._water, self.losses, self._sheet_row, spring, driver,
+                   reader.bodies, reader.values, self._addresses, self._slots, self.sheet_sums, self.sums, nodes)
+        strange = done < 0
+        if 0 <= done < n:  # the contacts of this sub-step did not fit: enlarge, read and add them
+            count = reader.read(self.space)
+            strange = accumulate(count, reader.bodies, reader.values, self._addresses, self._slots, self.sheet_sums,
+                                 self.sums, nodes) > 0
+            done += 1
+        if strange:
             raise RuntimeError(f"section at y = {self.y:g} m: contact with a body that is no block, sheet or structure")
+        return done
 
-    def slope_at(self, x: float, z: float) -> float:
-        """Angle of the nearest face that meets the drift, from the x axis [rad]; nan without one."""
-        return float(nearest_edge(self.slopes, x, z)[1]) if len(self.slopes) else float("nan")
+    def slope_angles(self) -> Array:
+        """Angle of the face that meets the drift and is nearest to each block (n,), from the x axis [rad]; or nan."""
+        return nearest_angles(self.slopes, self.state) if len(self.slopes) else np.full(len(self.blocks), np.nan)
 
 
-_NO_NODES = np.zeros((0, 4))
+_NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
 
 
 def _address(body: pymunk.Body) -> int:
