@@ -47,8 +47,8 @@ def dispersion(ice: Ice, kx: Array | float, ky: Array | float) -> Array:
 def eigenfrequencies(ice: Ice, Lx: float, Ly: float, count: int) -> Array:
     """Lowest frequencies of the simply supported plate on the foundation, (count,) [Hz]; left column of Table 2-2."""
     order = count + 1  # mode (m, n) has at least m*n - 1 modes below it, so count of each is enough
-    m, n = np.meshgrid(np.arange(1, order + 1), np.arange(1, order + 1), indexing="ij")
-    branch = dispersion(ice, np.pi * m / Lx, np.pi * n / Ly)[..., 0]
+    m, n = np.indices((order, order)) + 1.0
+    branch = dispersion(ice, m * (np.pi / Lx), n * (np.pi / Ly))[..., 0]
     return np.sort(branch.ravel())[:count] / (2.0 * np.pi)
 
 

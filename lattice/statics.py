@@ -62,7 +62,8 @@ def held_in_plane(grid: Grid, supports: Mapping[str, str]) -> IntArray:
 def ice_area(grid: Grid, intact: np.ndarray | None = None) -> Array:
     """Area of intact ice that belongs to each node, a quarter of each of its cells, (nodes,) [m2]."""
     cells = grid.cell_nodes if intact is None else grid.cell_nodes[intact]
-    return np.bincount(cells.ravel(), minlength=grid.nodes) * (grid.d**2 / 4.0)
+    corners: Array = np.bincount(cells.ravel(), minlength=grid.nodes).astype(np.float64)
+    return corners * (grid.d**2 / 4.0)
 
 
 def out_of_plane_stiffness(grid: Grid, ice: Ice, springs: Springs, intact: np.ndarray | None = None,

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from cosim.verify import dispersion, eigenfrequencies, frequency_response, static_deflection
+from cosim.verify import cantilever, dispersion, eigenfrequencies, frequency_response, splitting, static_deflection
 from cosim.verify.case import CaseResult, Figure, Quantity
 from cosim.verify.settings import merged, parse
 
@@ -21,6 +21,8 @@ CASES: dict[str, ModuleType] = {
     "static-deflection": static_deflection,
     "dispersion": dispersion,
     "frequency-response": frequency_response,
+    "splitting": splitting,
+    "cantilever": cantilever,
 }
 
 

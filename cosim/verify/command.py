@@ -6,10 +6,11 @@ import json as json_module
 import sys
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from cosim.verify import CASES, CaseResult, Quantity, run
@@ -17,7 +18,7 @@ from cosim.verify import CASES, CaseResult, Quantity, run
 
 def verify_command(
     case: Annotated[str | None, typer.Argument(help=f"One of {', '.join(CASES)}; all without it.")] = None,
-    set: Annotated[list[str] | None, typer.Option("--set", help="Parameter of the case, name=value.")] = None,  # noqa: A002
+    set: Annotated[list[str] | None, typer.Option("--set", help="Parameter of the case, name=value.")] = None,
     plots: Annotated[Path | None, typer.Option(help="Folder for the figures of the thesis, as PNG.")] = None,
     quick: Annotated[bool, typer.Option(help="Coarser and shorter where a case is slow.")] = False,
     json: Annotated[bool, typer.Option(help="One JSON text on standard output.")] = False,
@@ -44,7 +45,8 @@ def _run_all(case: str | None, settings: list[str] | None, plots: Path | None, q
     for name in CASES:
         start = time.perf_counter()
         results += run(name, None, plots, quick)
-        print(f"{name}: {'ok' if results[-1].passed else 'FAILED'}, {time.perf_counter() - start:.1f} s", file=sys.stderr)
+        mark = "ok" if results[-1].passed else "FAILED"
+        print(f"{name}: {mark}, {time.perf_counter() - start:.1f} s", file=sys.stderr)
     return results
 
 
@@ -53,7 +55,7 @@ def _show(results: list[CaseResult]) -> None:
     for result in results:
         for quantity in result.quantities:
             if quantity.reference is not None or len(results) == 1:
-                table.add_row(result.case, f"{quantity.name} [{quantity.unit}]", *_row(quantity))
+                table.add_row(result.case, escape(f"{quantity.name} [{quantity.unit}]"), *_row(quantity))
     console = Console()
     (console if console.is_terminal else Console(width=140)).print(table)
 
@@ -71,5 +73,5 @@ def _text(number: object) -> str:
     return ", ".join(f"{x:.5g}" for x in flat) if len(flat) <= 5 else f"{flat[0]:.6g} ... {flat[-1]:.6g} ({len(flat)})"
 
 
-def _flat(numbers: list) -> list[float]:  # type: ignore[type-arg]
+def _flat(numbers: list[Any]) -> list[float]:
     return [x for item in numbers for x in (_flat(item) if isinstance(item, list) else [item])]
