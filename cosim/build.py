@@ -56,7 +56,7 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
     """The floe, its front on the structure's axis plane just touching the face at the height of its upper edge."""
     s = scenario.sheet
     front = float(structure.face_x(0.0, ice.freeboard))
-    grid = Grid.rectangle(s.length, s.width, *s.nodes, x0=front - s.length, y0=-s.axis)
+    grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
     held = np.zeros(grid.nodes, bool)
     if s.back == "held":
         held[grid.edge_nodes("x-")] = True

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from cosim.build import build, run_info
 from cosim.observer import Observer
@@ -76,16 +77,17 @@ def event_json(e: Event) -> dict[str, Any]:
 def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunResult:
     """Simulates a scenario to its end; observers see every window. They are closed by whoever made them."""
     began = time.perf_counter()
-    scheduler = build(scenario)
     result = RunResult(scenario)
-    info = run_info(scenario)
-    for observer in observers:
-        observer.on_start(info)
-    while scheduler.t_ns < scenario.duration_ns:
-        frame = scheduler.macro_step()
-        result.see(frame)
+    with threadpool_limits(1):  # linear algebra adds in the same order on every machine: same scenario, same bits
+        scheduler = build(scenario)
+        info = run_info(scenario)
         for observer in observers:
-            observer.on_frame(frame)
+            observer.on_start(info)
+        while scheduler.t_ns < scenario.duration_ns:
+            frame = scheduler.macro_step()
+            result.see(frame)
+            for observer in observers:
+                observer.on_frame(frame)
     _finish(result, scheduler)
     result.wall_s = time.perf_counter() - began
     return result

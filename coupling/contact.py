@@ -63,9 +63,9 @@ class OverlapContact:
         return L, np.nan_to_num(self._s.normal(self._sample_y, z[:, None]), nan=1.0)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
-        """Force on the ice (m, 5) and tangent (m, 5, 5) for y = u_x, u_y, w, phi_x, phi_y: an `EdgeContact`."""
+        """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] for y = u_x, u_y, w: an `EdgeContact`."""
         m = len(self.nodes)
-        force, tangent = np.zeros((m, 5)), np.zeros((m, 5, 5))
+        force, tangent = np.zeros((m, 3)), np.zeros((m, 3, 3))
         L, normal = self.overlap(t, y)
         on = np.flatnonzero(L.any(axis=1))
         if not len(on):
@@ -75,11 +75,11 @@ class OverlapContact:
         full = self._h * cos / sin
         direction = self._direction(normal, sin)
         per_overlap = (self._law.strength * width / SAMPLES / cos)[..., None] * direction
-        force[on, :3] = (per_overlap * np.minimum(L, full)[..., None]).sum(axis=1)
+        force[on] = (per_overlap * np.minimum(L, full)[..., None]).sum(axis=1)
         growing = per_overlap * ((L > 0.0) & (L < full))[..., None]
         rise = normal[..., 2] / normal[..., 0]  # -dx/dz of the face: dL/dw
-        tangent[on, :3, 0] = growing.sum(axis=1)
-        tangent[on, :3, 2] = (growing * rise[..., None]).sum(axis=1)
+        tangent[on, :, 0] = growing.sum(axis=1)
+        tangent[on, :, 2] = (growing * rise[..., None]).sum(axis=1)
         return force, tangent
 
     def _direction(self, normal: Array, sin: Array) -> Array:

@@ -73,13 +73,16 @@ class RubblePort:
         block.v_y = float(b.velocity[1])
         return float(block.mass)
 
+    def sections_in_use(self) -> list[int]:
+        """Sections that hold blocks or are next to one: those that must know where the sheet is."""
+        return sorted({k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)})
+
     def set_sheet(self, edges: dict[int, SheetEdge]) -> None:
-        """The sheet's edges for the coming window; only sections that hold blocks, or are next to one, need them."""
-        active = {k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)}
-        for key in set(self._edges) - (set(edges) & active):
+        """The sheet's edges for the coming window."""
+        for key in set(self._edges) - set(edges):
             self.layer.remove_sheet(key)
-        self._edges = {k: edges[k] for k in sorted(active) if k in edges}
-        for key, e in self._edges.items():
+        self._edges = edges
+        for key, e in edges.items():
             self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, self._carried(e))
 
     def _carried(self, edge: SheetEdge) -> tuple[float, float]:
@@ -99,7 +102,8 @@ class RubblePort:
         if nodes:
             f = np.concatenate(forces)
             on = np.flatnonzero(f.any(axis=1))
-            self._forces = SheetForces(np.concatenate(nodes)[on], np.column_stack((f[:, 0], 0.0 * f[:, 0], f[:, 1]))[on])
+            force = np.column_stack((f[:, 0], np.zeros(len(f)), f[:, 1]))
+            self._forces = SheetForces(np.concatenate(nodes)[on], force[on])
         else:
             self._forces = SheetForces.none()
 
@@ -136,6 +140,9 @@ class NoRubble:
         mass = float(fragment.mass.sum())
         self.cleared_mass += mass
         return HandOver(0, mass, 0.0, 0.0)
+
+    def sections_in_use(self) -> list[int]:
+        return []
 
     def set_sheet(self, edges: dict[int, SheetEdge]) -> None:
         """Nothing is there to meet the sheet."""

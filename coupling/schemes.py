@@ -16,7 +16,7 @@ def serial_explicit(s: Scheduler) -> Report:
     report = s.sheet.advance(s.t_ns, s.window_ns, s.rubble.forces_on_sheet(), s.rubble_load())
     for fragment in report.fragments:
         s.hand_over(fragment)
-    s.rubble.set_sheet(s.sheet.edges())
+    s.rubble.set_sheet(s.sheet.edges(s.rubble.sections_in_use()))
     s.rubble.advance(s.window_ns)
     return report
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -55,6 +56,7 @@ class SheetPort:
         self.initial_mass = ice.rho_i * ice.h * float(g.area.sum())
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
         self._t, self._quiet, self._last_load = 0.0, True, np.zeros(3)
+        self._fragments: list[Fragment] = []
         self._renew_edge()
 
     # ---- one window -------------------------------------------------------------------------------------------
@@ -88,7 +90,7 @@ class SheetPort:
         column = np.flatnonzero(self.meets & (front >= 0))
         row = front[column]
         nodes = row * g.ny + column
-        x_front = g.xy[nodes, 0] + self.edge.lead(row)
+        x_front = np.asarray(g.xy[nodes, 0] + self.edge.lead(row), np.float64)
         self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
         self.front_column = column
 
@@ -98,7 +100,7 @@ class SheetPort:
         n = self.contact.nodes
         if not len(n):
             return
-        overlap, _ = self.contact.overlap(self._t, np.hstack((s.u[n], s.q[n])))
+        overlap, _ = self.contact.overlap(self._t, np.column_stack((s.u[n], s.q[n, 0])))
         self.edge.crush(self.front_column, overlap)
         spent = self.edge.spent()
         if len(spent):
@@ -151,18 +153,29 @@ class SheetPort:
 
     # ---- what others see --------------------------------------------------------------------------------------
 
-    def edges(self) -> dict[int, SheetEdge]:
-        """The sheet's edge and underside per section, as the rubble meets it in the coming window."""
+    def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
+        """The sheet's edge and underside in these sections, as the rubble meets it in the coming window."""
         found = {}
-        for key in range(-(-self.sheet.grid.ny // self.columns_per_section)):
-            columns = np.arange(key * self.columns_per_section,
-                                min((key + 1) * self.columns_per_section, self.sheet.grid.ny))
-            column = int(columns[np.argmax(self.edge.front[columns])])
-            if self.edge.front[column] >= 0:
-                found[key] = self._edge(column)
+        stiffness = self._stiffness() if sections else []
+        for key in sections:
+            first = key * self.columns_per_section
+            if 0 <= first < self.sheet.grid.ny:
+                front = self.edge.front[first : first + self.columns_per_section]
+                column = first + int(np.argmax(front))
+                if front.max() >= 0:
+                    nearest = int(np.argmin(np.abs(self.front_column - column))) if len(self.front_column) else 0
+                    found[key] = self._edge(column, stiffness[nearest])
         return found
 
-    def _edge(self, column: int) -> SheetEdge:
+    def _stiffness(self) -> list[tuple[float, float]]:
+        """Stiffness in x and z of the edge nodes in the structure's way, or of any front node if there are none."""
+        nodes = self.contact.nodes
+        if not len(nodes):
+            column = np.flatnonzero(self.edge.front >= 0)[:1]
+            nodes = self.edge.front[column] * self.sheet.grid.ny + column
+        return self.sheet.engine.point_stiffness(nodes)
+
+    def _edge(self, column: int, stiffness: tuple[float, float]) -> SheetEdge:
         g, s, front = self.sheet.grid, self.sheet.state, int(self.edge.front[column])
         rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
         present = self.sheet.present[rows * g.ny + column]
@@ -172,15 +185,7 @@ class SheetPort:
         velocity = np.column_stack((s.u_dot[nodes, 0] + self.velocity, s.q_dot[nodes, 0]))
         lead = float(self.edge.lead(rows[:1])[0])
         return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity,
-                         self.sheet.ice.h, nodes, self._stiffness(column))
-
-    def _stiffness(self, column: int) -> tuple[float, float]:
-        """Stiffness of the edge at a column: of its own node, or of the nearest one in the structure's way."""
-        if not len(self.front_column):
-            column = int(np.flatnonzero(self.edge.front >= 0)[0])
-            return self.sheet.engine.point_stiffness(np.array([self.edge.front[column] * self.sheet.grid.ny + column]))[0]
-        k = self.sheet.engine.point_stiffness(self.contact.nodes)
-        return k[int(np.argmin(np.abs(self.front_column - column)))]
+                         self.sheet.ice.h, nodes, stiffness)
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""

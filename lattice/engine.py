@@ -62,7 +62,7 @@ class EdgeContact(Protocol):
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on each node and its derivative.
 
-        ``y`` (m, 5) holds u_x, u_y, w, phi_x, phi_y; returns the force (m, 5) [N, N m] and the tangent (m, 5, 5).
+        ``y`` (m, 3) holds u_x, u_y, w [m]; returns the force (m, 3) [N] and the tangent (m, 3, 3) [N/m].
         """
         ...
 
@@ -73,12 +73,12 @@ class NoContact:
     nodes = np.empty(0, np.int64)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
-        return np.empty((0, 5)), np.empty((0, 5, 5))
+        return np.empty((0, 3)), np.empty((0, 3, 3))
 
 
 @dataclass(frozen=True)
 class Step:
-    """Result of one step: the new state and the contact force, mean over the step and at its end, (m, 5)."""
+    """Result of one step: the new state and the contact force, mean over the step and at its end, (m, 3) [N]."""
 
     state: State
     contact_mean: Array
@@ -109,8 +109,8 @@ class Engine:
 
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
         """Force per displacement of single nodes in x and z, for motions of the length of a stage [N/m]."""
-        x = np.diagonal(self._in.compliance((2 * nodes[:, None] + np.arange(2)).ravel()))[::2]
-        z = np.diagonal(self._out.compliance((3 * nodes[:, None] + np.arange(3)).ravel()))[::3]
+        x = np.diagonal(self._in.compliance(_dof_u(nodes)))[::2]
+        z = np.diagonal(self._out.compliance(_dof_w(nodes)))
         return [(1.0 / max(float(a), 1e-15), 1.0 / float(b)) for a, b in zip(x, z, strict=True)]
 
     def step(self, t: float, state: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Step:
@@ -136,14 +136,10 @@ class Engine:
             b_u = b_u + self.alpha / a * self._in.spring_force(s.u.ravel())
             b_q = b_q + self.alpha / a * self._out.spring_force(s.q.ravel())
         u, q = self._in.solve(b_u).reshape(-1, 2), self._out.solve(b_q).reshape(-1, 3)
-        f = np.zeros((len(n), 5))
-        if len(n):
-            f = self._contact_force(t, np.hstack((u[n], q[n])), contact)
-            if f.any():
-                p_u, p_q = np.zeros_like(u), np.zeros_like(q)
-                p_u[n], p_q[n] = f[:, :2], f[:, 2:]
-                u = u + self._in.solve(p_u.ravel()).reshape(-1, 2)
-                q = q + self._out.solve(p_q.ravel()).reshape(-1, 3)
+        f = self._contact_force(t, np.column_stack((u[n], q[n, 0])), contact) if len(n) else np.zeros((0, 3))
+        if f.any():
+            u = u + self._in.response(_dof_u(n), f[:, :2].ravel()).reshape(-1, 2)
+            q = q + self._out.response(_dof_w(n), f[:, 2]).reshape(-1, 3)
         return State(u, q, (u - s.u) / a, (q - s.q) / a), f
 
     def _contact_force(self, t: float, free: Array, contact: EdgeContact) -> Array:
@@ -151,18 +147,24 @@ class Engine:
         f, tangent = contact.evaluate(t, free)
         if not f.any() and not tangent.any():
             return f
-        m = len(free)
-        G = np.zeros((m, 5, m, 5))
-        n = contact.nodes
-        dof_u, dof_q = (2 * n[:, None] + np.arange(2)).ravel(), (3 * n[:, None] + np.arange(3)).ravel()
-        G[:, :2, :, :2] = self._in.compliance(dof_u).reshape(m, 2, m, 2)
-        G[:, 2:, :, 2:] = self._out.compliance(dof_q).reshape(m, 3, m, 3)
+        m, n = len(free), contact.nodes
+        G = np.zeros((m, 3, m, 3))
+        G[:, :2, :, :2] = self._in.compliance(_dof_u(n)).reshape(m, 2, m, 2)
+        G[:, 2, :, 2] = self._out.compliance(_dof_w(n))
         y = free.copy()
         for _ in range(50):
             residual = y - free - np.einsum("iajb,jb->ia", G, f)
-            J = np.eye(5 * m) - np.einsum("iajb,jbc->iajc", G, tangent).reshape(5 * m, 5 * m)
-            y = y - la.solve(J, residual.ravel()).reshape(m, 5)
+            J = np.eye(3 * m) - np.einsum("iajb,jbc->iajc", G, tangent).reshape(3 * m, 3 * m)
+            y = y - la.solve(J, residual.ravel()).reshape(m, 3)
             old, (f, tangent) = f, contact.evaluate(t, y)
             if np.abs(f - old).max() <= 1e-9 * max(np.abs(f).max(), 1.0):
                 return f
         raise StepError(f"contact of the sheet's edge found no equilibrium at t = {t:.4f} s: use a shorter window")
+
+
+def _dof_u(nodes: IntArray) -> IntArray:
+    return (2 * nodes[:, None] + np.arange(2)).ravel()
+
+
+def _dof_w(nodes: IntArray) -> IntArray:
+    return 3 * nodes

@@ -91,6 +91,17 @@ class CrackedSystem:
         G[np.ix_(on, on)] = G_free
         return G
 
+    def response(self, dof: IntArray, b: Array) -> Array:
+        """x for a right side b (m,) that acts on `dof` only, (n,); from the columns that `compliance` keeps."""
+        if not np.array_equal(dof, self._points):
+            self._keep_columns(dof)
+        y = self._point_columns @ b
+        if self._U.shape[1]:
+            y += self._Z @ la.lu_solve(self._S, self._U.T @ y)
+        x = np.zeros(len(self._to_free))
+        x[self._free] = y
+        return x
+
     def _keep_columns(self, dof: IntArray) -> None:
         """Columns of A^-1 at `dof`; those already known are kept."""
         known = {p: k for k, p in enumerate(self._points)}

@@ -19,7 +19,7 @@ from lattice.stiffness import Springs
 class Outcome:
     """What happened in one step."""
 
-    contact_mean: Array  #: contact force on the edge nodes, mean over the step, (m, 5)
+    contact_mean: Array  #: contact force on the edge nodes, mean over the step, (m, 3) [N]
     contact_end: Array  #: the same at its end
     failed: list[int] = field(default_factory=list)  #: cells in the order in which they failed
     pieces: list[IntArray] = field(default_factory=list)  #: nodes of the pieces that left, in order
@@ -53,7 +53,7 @@ class Sheet:
         A piece that comes loose leaves at once with its state at the start of the step: ``release`` is called with
         its nodes and must renew the edge of ``contact``.
         """
-        out = Outcome(np.empty((0, 5)), np.empty((0, 5)), parts=self.parts)
+        out = Outcome(np.empty((0, 3)), np.empty((0, 3)), parts=self.parts)
         while True:
             force_u[~self.present], force_q[~self.present] = 0.0, 0.0
             step = self.engine.step(t, self.state, force_u, force_q, contact)
