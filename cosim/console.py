@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import time
+from collections import Counter
 from typing import Any
 
 from rich import box
@@ -15,8 +17,9 @@ from cosim.compare import Range, Row, ratio
 from cosim.observer import RunInfo
 from coupling.interface import NS, PHASES, Frame
 
+WIDTH = None if sys.stdout.isatty() else 120  #: a pipe has no width of its own
 stderr = Console(stderr=True)
-stdout = Console()
+stdout = Console(width=WIDTH)
 SCALES = {"N": (1e-6, "MN"), "s": (1.0, "s"), "m^3": (1.0, "m^3")}  #: factor and unit of display
 
 
@@ -43,11 +46,20 @@ class ProgressBar:
         wall = max(time.monotonic() - self._begin, 1e-9)
         self._progress.update(self._task, completed=t, now=f"{t:6.1f} of {self._duration:g} s",
                               rate=f"{t / wall:.2f} x real time")
-        for event in frame.events:
-            self._progress.console.print(f"{event.t_ns / NS:8.2f} s  {event.kind}: {event.text}", highlight=False)
+        for line in event_lines(frame):
+            self._progress.console.print(line, highlight=False, markup=False, soft_wrap=True)
 
     def on_close(self) -> None:
         self._progress.stop()
+
+
+def event_lines(frame: Frame) -> list[str]:
+    """One line for each kind of event of a window: the first of its kind, and how many more there are."""
+    count = Counter(event.kind for event in frame.events)
+    first = {event.kind: event for event in reversed(frame.events)}
+    more = {kind: f" (and {n - 1} more)" if n > 1 else "" for kind, n in count.items()}
+    return [f"{event.t_ns / NS:8.2f} s  {kind}: {event.text}{more[kind]}"
+            for kind, event in sorted(first.items(), key=lambda item: item[1].t_ns)]
 
 
 def run_tables(result: dict[str, Any]) -> list[Table]:

@@ -58,11 +58,14 @@ def peak_time(run: RunData, component: str = "fx", phase: str | None = None) -> 
 
 
 def build_up_time(run: RunData, event: Kinds, component: str = "fx") -> float | None:
-    """Time from the last window below a tenth of the load at the event to the event [s]."""
+    """Time from the last window below a tenth of the load at the event, before the largest one until then [s]."""
     found, limit = first_event(run, event), event_load(run, event, component)
     if found is None or limit is None:
         return None
-    low = np.flatnonzero((run.t_ns <= found.t_ns) & (run.component(component) < 0.1 * limit))
+    load = run.component(component)[run.t_ns <= found.t_ns]
+    if not len(load):
+        return None
+    low = np.flatnonzero(load[:load.argmax()] < 0.1 * limit)
     begin = run.t_ns[low[-1]] if len(low) else run.t_ns[0]
     return float(found.t_ns - begin) / NS
 

@@ -95,7 +95,7 @@ def blueprint(run: RunData) -> rrb.Blueprint:
     """Two cameras on the left, from above and from under water; loads and events on the right."""
     reach = 0.5 * float(run.metadata["spacing_m"]) * max(_nodes(run))
     above = _view("Sheet: blue to red = utilisation, dark = cracked",
-                  (-0.5 * reach - 34, -0.6 * reach - 32, 0.4 * reach + 26), (-0.3 * reach - 6, 0, 0), (24, 34, 52))
+                  (-0.5 * reach - 44, -0.6 * reach - 46, 0.4 * reach + 36), (-0.3 * reach - 8, -4, -4), (24, 34, 52))
     below = _view("Rubble from under water: orange = rotating, green = sliding",
                   (-58, -52, -24), (-12, 0, -7), (14, 52, 70))
     curves = [rrb.TimeSeriesView(origin=f"/load/{axis}", name=f"{label} on the structure [MN]",
@@ -122,12 +122,14 @@ def _view(name: str, position: tuple[float, ...], target: tuple[float, ...], rgb
 
 
 def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
-    series = [("total", None, TOTAL_RGB), *((p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
+    # curves are drawn in the order of their paths: the total first, so that it hides no phase
+    series = [("all", "total", None, TOTAL_RGB),
+              *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
     index = rr.TimeColumn(TIMELINE, duration=run.t)
     for axis in ("fx", "fz"):
-        for name, phase, rgb in series:
-            path = f"load/{axis}/{name}"
-            width = 2.5 if phase is None else 1.8
+        for key, name, phase, rgb in series:
+            path = f"load/{axis}/{key}"
+            width = 3.5 if phase is None else 1.6
             stream.log(path, rr.SeriesLines(names=name, colors=rgb, widths=width), static=True)
             values = rr.Scalars.columns(scalars=run.component(axis, phase) * 1e-6)
             stream.send_columns(path, indexes=[index], columns=values)

@@ -11,6 +11,7 @@ from cosim.recording import read_run
 from cosim.reference import FeatureError, load_reference, parse_reference
 from cosim.run_data import RunData
 from cosim.scenario import find_scenarios
+from coupling.interface import Event
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +69,14 @@ def test_level_between_peaks_is_the_sliding_level(synthetic, run):
     """Breaking swings to zero every 2.5 s; what is left there, late in the run, is sliding: 3 MN and little more."""
     level = features.level_between_peaks(run, "fx")
     assert 1.0e6 < level < 3.2e6
+
+
+def test_build_up_ends_at_the_event_also_if_the_load_has_dropped_in_its_window():
+    """The load of the event is the load before the break; the mean of the window of the break may be small."""
+    t = 0.1 * np.arange(1, 101)
+    broken = Event(round(5e9), "split", (5.0, 0.0, 0.0), 3, (0.0, 0.0, 0.0), "")
+    run = series(t, np.where(t < 4.95, t, 0.0), [broken])
+    assert features.build_up_time(run, "split") == pytest.approx(4.6, rel=1e-9)  # 0.4 is below a tenth of 5
 
 
 def test_build_up_and_rubble(run):
