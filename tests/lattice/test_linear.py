@@ -1,0 +1,65 @@
+"""The factorised system that loses cells gives what a fresh factorisation gives."""
+
+import numpy as np
+import pytest
+
+from lattice.assembly import in_plane_springs, out_of_plane_springs
+from lattice.grid import Grid
+from lattice.ice import Ice
+from lattice.linear import MAX_RANK, CrackedSystem
+from lattice.stiffness import hrennikoff
+
+GRID = Grid(9, 8, 2.0)
+ICE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0)
+TABLES = {"in-plane": in_plane_springs(hrennikoff(ICE)), "out-of-plane": out_of_plane_springs(hrennikoff(ICE), GRID.d)}
+
+
+def system(rows, intact):
+    n = GRID.nodes * rows.shape[1] // 4
+    held = np.zeros(n, bool)
+    held[: rows.shape[1] // 4 * GRID.ny] = True
+    return CrackedSystem(GRID, rows, intact, np.full(n, 1e7), 1.3, held)
+
+
+@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("cells", [1, 9, 25])
+def test_removing_cells_is_factorising_without_them(name, cells):
+    rows, rng = TABLES[name], np.random.default_rng(1)
+    gone = rng.choice(GRID.cells, cells, replace=False)
+    updated = system(rows, np.ones(GRID.cells, bool))
+    for cell in gone:
+        updated.remove(np.array([cell]))
+    intact = np.ones(GRID.cells, bool)
+    intact[gone] = False
+    fresh = system(rows, intact)
+    b = rng.normal(size=GRID.nodes * rows.shape[1] // 4)
+    np.testing.assert_allclose(updated.solve(b), fresh.solve(b), rtol=1e-9, atol=1e-9 * np.abs(fresh.solve(b)).max())
+    assert cells * len(rows) < MAX_RANK or cells == 25  # the largest case crosses the refactoring limit
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_compliance_and_response_are_parts_of_the_inverse(name):
+    rows = TABLES[name]
+    s = system(rows, np.ones(GRID.cells, bool))
+    s.remove(np.array([20, 21]))
+    dof = np.array([2, 60, 61, 90])  # the first one is held
+    identity = np.eye(GRID.nodes * rows.shape[1] // 4)
+    columns = np.array([s.solve(identity[k]) for k in dof]).T
+    np.testing.assert_allclose(s.compliance(dof), columns[dof], rtol=1e-9, atol=1e-20)
+    f = np.array([3.0, -1.0, 2.0, 0.5])
+    np.testing.assert_allclose(s.response(dof, f), columns @ f, rtol=1e-8, atol=1e-18)
+    assert s.compliance(dof)[0].any() == False  # noqa: E712  a held degree of freedom does not move
+
+
+def test_spring_force_is_the_gradient_of_the_energy():
+    rows = TABLES["in-plane"]
+    s = system(rows, np.ones(GRID.cells, bool))
+    s.remove(np.array([5]))
+    x = np.random.default_rng(2).normal(size=2 * GRID.nodes)
+
+    def energy(v):
+        return 0.5 * v @ s.spring_force(v)
+
+    direction = np.random.default_rng(3).normal(size=len(x))
+    slope = (energy(x + 1e-3 * direction) - energy(x - 1e-3 * direction)) / 2e-3
+    assert slope == pytest.approx(s.spring_force(x) @ direction, rel=1e-9)
