@@ -48,7 +48,9 @@ def eigenfrequencies(ice: Ice, Lx: float, Ly: float, count: int) -> Array:
     """Lowest frequencies of the simply supported plate on the foundation, (count,) [Hz]; left column of Table 2-2."""
     order = count + 1  # mode (m, n) has at least m*n - 1 modes below it, so count of each is enough
     m, n = np.indices((order, order)) + 1.0
-    branch = dispersion(ice, m * (np.pi / Lx), n * (np.pi / Ly))[..., 0]
+    kx: Array = m * (np.pi / Lx)
+    ky: Array = n * (np.pi / Ly)
+    branch = dispersion(ice, kx, ky)[..., 0]
     return np.sort(branch.ravel())[:count] / (2.0 * np.pi)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy.sparse as sp
 
-from lattice.grid import Array
+from lattice.grid import Array, IntArray
 from lattice.ice import Ice
 from lattice.limits import CellState
 from lattice.specimens import Piece
@@ -54,7 +54,7 @@ class MovingPiece:
         """March under the tip force rate * t [N/s]."""
         self.stepper.run(steps, lambda t: rate * t * self.load)
 
-    def remove(self, cells: Array) -> None:
+    def remove(self, cells: IntArray) -> None:
         """Take cells out of the stiffness; displacement and velocity go on (thesis 4.2.1)."""
         self.intact[cells] = False
         K, C = self._matrices()
@@ -67,7 +67,7 @@ class MovingPiece:
         full[self.free] = self.stepper.q
         return full.reshape(-1, 3)
 
-    def state(self, cells: np.ndarray) -> CellState:
+    def state(self, cells: IntArray) -> CellState:
         grid = self.piece.grid
         return CellState.of(grid, np.zeros((grid.nodes, 2)), self.q, cells)
 

@@ -46,7 +46,7 @@ class EdgeCrack:
         intact[: self.cut, row] = False
         load = np.zeros(2 * grid.nodes)
         load[2 * grid.node(0, row) + 1], load[2 * grid.node(0, row + 1) + 1] = -1.0, 1.0
-        held = 2 * np.array([grid.node(n, 0), grid.node(n, 0), grid.node(n, n)]) + [0, 1, 0]  # rigid motion, no reaction
+        held = 2 * np.array([grid.node(n, 0), grid.node(n, 0), grid.node(n, n)]) + [0, 1, 0]  # rigid motion
         return solve(in_plane_stiffness(grid, hrennikoff(self.ice), intact.ravel()), load, held).reshape(-1, 2)
 
     def tip_state(self, u: Array) -> CellState:

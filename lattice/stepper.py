@@ -4,8 +4,8 @@
 
 The damping force takes the velocity of half a step before, which shortens the stable step: it must stay below the dt
 at which dt^2 A + 2 dt B reaches 4, A = M^-1/2 K M^-1/2 and B the same of C. For one mode that is the familiar
-2 (sqrt(1 + xi^2) - xi) / omega. Stiffness-proportional damping is therefore dear: 1e-3 s makes the step of the beam of Table 4-4
-twenty times shorter.
+2 (sqrt(1 + xi^2) - xi) / omega. Stiffness-proportional damping is therefore dear: 1e-3 s makes the
+step of the beam of Table 4-4 twenty times shorter.
 """
 
 from __future__ import annotations
@@ -78,8 +78,8 @@ class Stepper:
         """New matrices, for example after a cell broke; q and v go on as they are."""
         limit = critical_step(K, C, self.m)
         if not 0.0 < self.dt <= limit:
-            raise ValueError(f"time step {self.dt:.3g} s is not stable: use at most {limit:.3g} s (largest frequency of "
-                             "the lattice, damping included)")
+            raise ValueError(f"time step {self.dt:.3g} s is not stable: use at most {limit:.3g} s "
+                             "(largest frequency of the lattice, damping included)")
         self.K, self.C = K.tocsr(), C.tocsr()
         self._merge(self.K, self.C)
 

@@ -10,7 +10,18 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from cosim.verify import cantilever, dispersion, eigenfrequencies, frequency_response, splitting, static_deflection
+from cosim.verify import (
+    cantilever,
+    dispersion,
+    eigenfrequencies,
+    envelope,
+    frequency_response,
+    froude,
+    l_beam,
+    poisson,
+    splitting,
+    static_deflection,
+)
 from cosim.verify.case import CaseResult, Figure, Quantity
 from cosim.verify.settings import merged, parse
 
@@ -21,8 +32,12 @@ CASES: dict[str, ModuleType] = {
     "static-deflection": static_deflection,
     "dispersion": dispersion,
     "frequency-response": frequency_response,
+    "poisson": poisson,
+    "envelope": envelope,
     "splitting": splitting,
     "cantilever": cantilever,
+    "l-beam": l_beam,
+    "froude": froude,
 }
 
 

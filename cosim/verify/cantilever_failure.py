@@ -14,7 +14,7 @@ import numpy as np
 
 from cosim.verify.case import Figure
 from lattice.continuum import hydrodynamic_damping
-from lattice.grid import Array
+from lattice.grid import Array, IntArray
 from lattice.ice import BeamTest, Ice
 from lattice.limits import Strength, crack_tip_bending
 from lattice.motion import MovingPiece
@@ -38,7 +38,7 @@ def history(p: dict[str, Any], failure_load: float, quick: bool) -> tuple[Array,
     return _march(moving, root, Strength(ice), 0.8 if quick else 1.0)
 
 
-def _march(moving: MovingPiece, root: Array, strength: Strength, end: float) -> tuple[Array, Array, float]:
+def _march(moving: MovingPiece, root: IntArray, strength: Strength, end: float) -> tuple[Array, Array, float]:
     times, deflection, failed = [0.0], [np.zeros(3)], np.inf
     while moving.stepper.t < end:
         moving.run(LOOK, RATE)

@@ -105,21 +105,30 @@ def _draw_branches(kd: Array, curves: dict[float, tuple[Array, Array]]) -> Any:
 def _draw_contours(ice: Ice, p: dict[str, Any], sizes: list[float], omegas: tuple[float, ...],
                    split: bool = False) -> Any:
     def draw(figure: Any) -> None:
-        theta = np.linspace(0.0, 2.0 * np.pi, 181)
         panels = figure.subplots(1, len(omegas) if split else 1, squeeze=False)[0]
+        theta = np.linspace(0.0, 2.0 * np.pi, 181)
         for i, omega in enumerate(omegas):
             axes = panels[i if split else 0]
             for j, d in enumerate(sizes):
-                stencil = _stencil(ice, p, d)
-                for branch in range(3):
-                    k = contour(stencil, omega, theta, branch) / d
-                    axes.plot(k * np.cos(theta), k * np.sin(theta), "--", color=f"C{j if split else i}",
-                              label=f"lattice d = {d:.3g} m, {omega:g} rad/s" if branch == 0 else None)
-            for radius in _continuum_radii(ice, omega):
+                colour = f"C{j if split else i}"
+                _lattice_contour(axes, _stencil(ice, p, d), omega, d, colour)
+                axes.plot([], [], "--", color=colour, label=f"lattice d = {d:.3g} m, {omega:g} rad/s")
+            radii = _continuum_radii(ice, omega)
+            for radius in radii:
                 axes.plot(radius * np.cos(theta), radius * np.sin(theta), "-", color="k", linewidth=0.8)
-            axes.set(aspect="equal", xlabel="k_x [1/m]", ylabel="k_y [1/m]")
+            axes.set(aspect="equal", xlabel="k_x [1/m]", ylabel="k_y [1/m]",
+                     xlim=(-1.25 * max(radii), 1.25 * max(radii)), ylim=(-1.25 * max(radii), 1.25 * max(radii)))
             axes.legend(fontsize=7, loc="upper right")
     return draw
+
+
+def _lattice_contour(axes: Any, stencil: Stencil, omega: float, d: float, colour: str) -> None:
+    """Level omega of the three branches over the whole Brillouin zone |k_x d|, |k_y d| <= pi."""
+    kd = np.linspace(-np.pi, np.pi, 161)
+    branches = stencil.dispersion(kd[:, None], kd[None, :])
+    for branch in range(3):
+        if branches[..., branch].min() < omega < branches[..., branch].max():
+            axes.contour(kd / d, kd / d, branches[..., branch].T, [omega], colors=colour, linestyles="--")
 
 
 def _continuum_radii(ice: Ice, omega: float) -> list[float]:

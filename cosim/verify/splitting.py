@@ -18,8 +18,8 @@ from lattice.ice import Ice
 from lattice.limits import Strength, crack_tip_splitting
 from lattice.specimens import EdgeCrack
 
-PARAMETERS: dict[str, Any] = {"L": 30.0, "h": 1.8, "a": 9.0, "rate": 303.0, "E": 8.7e9, "nu": 1.0 / 3.0, "K_IC": 238.0e3,
-                              "ratio": 5.0, "cells": 60}
+PARAMETERS: dict[str, Any] = {"L": 30.0, "h": 1.8, "a": 9.0, "rate": 303.0, "E": 8.7e9, "nu": 1.0 / 3.0,
+                              "K_IC": 238.0e3, "ratio": 5.0, "cells": 60}
 RATIOS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
 SOURCE = "van Vliet (2018), section 4.2.1"
 
@@ -103,8 +103,8 @@ def _history(p: dict[str, Any], cells: int, cut: int, force: float) -> Array:
 def _figure_13(curves: dict[str, Array], cells: int) -> Figure:
     def draw(figure: Any) -> None:
         axes = figure.subplots()
-        fine = np.linspace(0.06, 0.88, 60)
-        axes.plot(fine, normalised_load(fine, 60), "k-", label="LEFM (energy release rate)")
+        fine = np.linspace(0.08, 0.82, 75)
+        axes.plot(fine, normalised_load(fine, 120), "k-", label="LEFM (energy release rate)")
         for marker, (name, curve) in zip("os", list(curves.items())[:2], strict=True):
             axes.plot(RATIOS, curve, marker, mfc="none", label=name)
         axes.set(xlabel="a / L [-]", ylabel="F / (h K_IC sqrt(L)) [-]", ylim=(0, None))
