@@ -170,7 +170,7 @@ class Rubble(Section):
     enabled: bool = True
     substep: Time = 0.005  #: constant step of the sections [s]
     iterations: int = Field(30, ge=1)  #: of the impulse solver; at least the depth of a chain of blocks
-    columns_per_section: int = Field(2, ge=1)  #: node columns in one section
+    columns_per_section: int = Field(1, ge=1)  #: node columns in one section
     friction_ice_ice: Coefficient = 0.1
     friction_structure: Coefficient = 0.1
     restitution: Share = 0.1

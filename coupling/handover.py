@@ -47,12 +47,13 @@ def _birth(f: Fragment, n: IntArray) -> BlockBirth:
     m = mass if mass.sum() > 0.0 else volume
     middle = np.array([np.average(ice_x, weights=volume), np.average(ice_z, weights=volume)])
     angle = _angle(ice_x, ice_z, f.tilt[n], volume)
-    centre = np.array([np.average(ice_x, weights=m), np.average(ice_z, weights=m)])
+    node = f.position[n][:, [0, 2]]  # where the lattice has the mass
+    centre = np.average(node, axis=0, weights=m)
     velocity = np.average(f.velocity[n], axis=0, weights=m)
     polygon, cuts, widths = _prism(f, n, ice_x, middle, angle)
-    arm = np.column_stack((ice_x, ice_z)) - centre
+    arm = node - centre
     spin = m * (arm[:, 0] * (f.velocity[n, 2] - velocity[2]) - arm[:, 1] * (f.velocity[n, 0] - velocity[0]))
-    own = m * (f.thickness**2 + f.length[n] ** 2) / 12.0
+    own = m * f.thickness**2 / 12.0  # rotary inertia of a node (2.22)
     omega = float((spin - own * f.tilt_rate[n]).sum() / (m * (arm**2).sum(axis=1) + own).sum())
     y = float(np.average(f.position[n, 1], weights=m))
     return BlockBirth(polygon, cuts, widths, angle, y, float(mass.sum()), centre, velocity, omega)

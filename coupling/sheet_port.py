@@ -161,8 +161,8 @@ class SheetPort:
             first = key * self.columns_per_section
             if 0 <= first < self.sheet.grid.ny:
                 front = self.edge.front[first : first + self.columns_per_section]
-                column = first + int(np.argmax(front))
-                if front.max() >= 0:
+                column = first + int(np.argmin(front))  # the rearmost: ice beside a new block must not overlap it
+                if front.min() >= 0:
                     nearest = int(np.argmin(np.abs(self.front_column - column))) if len(self.front_column) else 0
                     found[key] = self._edge(column, stiffness[nearest])
         return found

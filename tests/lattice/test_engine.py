@@ -44,7 +44,7 @@ def test_heave_converges_at_second_order(damping):
 def test_a_free_floe_keeps_its_momentum_and_its_rotation():
     e, s = engine(0.05), State.rest(GRID.nodes)
     rng = np.random.default_rng(4)
-    s.u_dot[:] = rng.normal(size=s.u_dot.shape) + (0.3, -0.2)
+    s.u_dot[:] = rng.normal(size=s.u_dot.shape) + np.array([0.3, -0.2])
     mass = e.M_u[::2, None]
     before = (mass * s.u_dot).sum(axis=0)
     for k in range(20):

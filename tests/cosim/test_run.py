@@ -1,0 +1,51 @@
+"""The whole chain on a small floe with coarse cells: it breaks, pieces become blocks, blocks load the structure."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cosim.run import run_scenario
+from cosim.scenario import load_scenario
+
+CASE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_55m_centre"
+SMALL = ["sheet.nodes=[20, 20]", "scenario.duration='46 s'", "rubble.columns_per_section=1"]
+
+
+@pytest.fixture(scope="module")
+def result():
+    return run_scenario(load_scenario(CASE, SMALL))
+
+
+def test_the_floe_splits_then_breaks_around_the_structure(result):
+    kinds = [e.kind for e in result.events]
+    assert kinds.index("split") < kinds.index("circumferential")
+    assert result.fragments >= 1
+    assert result.blocks >= 1
+
+
+def test_blocks_load_the_structure(result):
+    rotating = result.by_phase["rotating"]
+    assert rotating.value[0] > 1e5
+    assert rotating.value[2] > 1e5
+
+
+def test_the_ledger_closes(result):
+    assert result.ledger["mass_error"] < 1e-12
+    assert result.ledger["momentum_error"] < 1e-9
+    assert result.ledger["crushed_mass"] > 0.0
+
+
+def test_same_scenario_same_bits(tmp_path):
+    """Two processes write the same file."""
+    files = []
+    for k in (1, 2):
+        out = tmp_path / f"{k}.mcap"
+        options = [part for item in [*SMALL, "scenario.duration='3 s'"] for part in ("--set", item)]
+        done = subprocess.run([sys.executable, "-c", "from cosim.cli import main; main()", "run", str(CASE), "-o",
+                               str(out), "--json", *options], capture_output=True, text=True, check=True)
+        assert json.loads(done.stdout)["simulated_s"] == 3.0
+        files.append(out.read_bytes())
+    assert files[0] == files[1]

@@ -1,0 +1,78 @@
+"""The thesis's contact (6.2) against a plane slope, where everything is in closed form."""
+
+import numpy as np
+import pytest
+
+from coupling.contact import ContactLaw, OverlapContact
+from coupling.structure import cone, plane_slope
+
+P, MU, H = 200e3, 0.1, 3.0
+FREEBOARD = 0.477
+
+
+def contact(structure, y=0.0, width=2.0, front=None):
+    law = OverlapContact(structure, ContactLaw(P, MU), 0.1, H, FREEBOARD)
+    z = FREEBOARD if law.face > 0 else FREEBOARD - H
+    start = float(structure.face_x(y, z)) if front is None else front
+    law.set_edge(np.array([7]), np.array([start]), np.array([y]), np.array([width]))
+    return law
+
+
+@pytest.mark.parametrize("degrees", [30.0, 45.0, 60.0])
+def test_force_on_a_plane_slope(degrees):
+    """F = p (L / cos a) b along the normal, mu F up the slope against ice that is pushed down."""
+    a = np.radians(degrees)
+    f, _ = contact(plane_slope(a)).evaluate(5.0, np.zeros((1, 3)))
+    F = P * min(0.5 / np.cos(a), H / np.sin(a)) * 2.0
+    expected = [-F * (np.sin(a) + MU * np.cos(a)), 0.0, -F * (np.cos(a) - MU * np.sin(a))]
+    np.testing.assert_allclose(f[0], expected, rtol=1e-12, atol=1e-6)
+
+
+def test_an_upward_breaking_slope_lifts_the_ice():
+    f, _ = contact(plane_slope(np.pi / 4, breaking="upward")).evaluate(5.0, np.zeros((1, 3)))
+    F = P * 0.5 / np.cos(np.pi / 4) * 2.0
+    np.testing.assert_allclose(f[0, [0, 2]], [-F * 1.1 / np.sqrt(2), F * 0.9 / np.sqrt(2)], rtol=1e-12)
+
+
+def test_the_contact_length_ends_where_the_slope_leaves_the_ice():
+    f, tangent = contact(plane_slope(np.pi / 4)).evaluate(100.0, np.zeros((1, 3)))
+    assert -f[0, 0] == pytest.approx(P * H * np.sqrt(2) * 2.0 * 1.1 / np.sqrt(2), rel=1e-12)
+    assert not tangent.any()
+
+
+def test_nothing_before_the_touch_and_nothing_beside_the_cone():
+    structure = cone(np.pi / 4, 15.0)
+    touching = float(structure.face_x(0.0, FREEBOARD))
+    assert not contact(structure, front=touching - 1.0).evaluate(9.0, np.zeros((1, 3)))[0].any()
+    assert not contact(structure, y=20.0, front=touching).evaluate(60.0, np.zeros((1, 3)))[0].any()
+
+
+@pytest.mark.parametrize("y", [0.0, 6.0, -12.0])
+def test_the_force_on_a_cone_lies_in_the_plane_through_its_axis(y):
+    structure = cone(np.pi / 4, 15.0)
+    f, _ = contact(structure, y, width=1e-6).evaluate(10.0, np.zeros((1, 3)))
+    x = float(structure.face_x(y, FREEBOARD))
+    assert f[0, 1] * x == pytest.approx(f[0, 0] * y, rel=1e-9, abs=1e-12)
+    assert np.hypot(f[0, 0], f[0, 1]) / -f[0, 2] == pytest.approx(1.1 / 0.9, rel=1e-9)
+
+
+def test_the_tangent_is_the_derivative():
+    law = contact(cone(np.pi / 4, 15.0), 5.0)
+    y = np.array([[0.02, 0.01, -0.1]])
+    _, tangent = law.evaluate(8.0, y)
+    for k in (0, 2):
+        step = np.zeros((1, 3))
+        step[0, k] = 1e-6
+        slope = (law.evaluate(8.0, y + step)[0] - law.evaluate(8.0, y - step)[0]) / 2e-6
+        np.testing.assert_allclose(tangent[0, :, k], slope[0], rtol=5e-2)  # the normal's own turn is left out
+
+
+def test_the_overlap_of_a_wide_node_is_its_mean_over_the_width():
+    """On a round structure the middle of a node touches before its sides: integration, not sampling."""
+    structure = cone(np.pi / 4, 15.0)
+    wide, _ = contact(structure, width=8.0).evaluate(5.0, np.zeros((1, 3)))
+    dy = np.linspace(-4.0, 4.0, 2001)
+    overlap = np.maximum(0.5 - (float(structure.face_x(0.0, FREEBOARD)) * -1 + structure.face_x(dy, FREEBOARD)), 0.0)
+    mean = overlap.mean() * P * np.sqrt(2) * 8.0
+    assert -wide[0, 2] == pytest.approx(mean * 0.9 / np.sqrt(2), rel=0.03)
+    assert -wide[0, 2] < 0.9 * 0.5 * P * np.sqrt(2) * 8.0 * 0.9 / np.sqrt(2)

@@ -1,0 +1,65 @@
+"""Basin floes of van Vliet (2018), chapter 6, breaking phase: loads and patterns of the thesis's own simulations."""
+
+from pathlib import Path
+
+import pytest
+
+from cosim.run import run_scenario
+from cosim.scenario import load_scenario
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+
+
+def breaking(case, until, *more):
+    options = ["rubble.enabled=false", f"scenario.duration='{until} s'", *more]
+    return run_scenario(load_scenario(SCENARIOS / f"van_vliet_2018_{case}", options))
+
+
+def first(result, kind):
+    return next(e for e in result.events if e.kind == kind)
+
+
+@pytest.mark.parametrize(("case", "fx", "fz", "time"), [
+    ("floe_55m_centre", 3.2e6, 2.7e6, 19.75),  # section 6.4, Figure 6-24; the time is an independent calculation's
+    ("floe_34x68m", 2.7e6, 2.3e6, 18.5),  # section 6.5, Figure 6-30
+])
+def test_small_floes_split(case, fx, fz, time):
+    split = first(breaking(case, 22), "split")
+    assert split.force[0] == pytest.approx(fx, rel=0.05)
+    assert split.force[2] == pytest.approx(fz, rel=0.05)
+    assert split.t_ns / 1e9 == pytest.approx(time, rel=0.03)
+
+
+def test_the_large_floe_cracks_along_its_centre_first():
+    """Section 6.3: a long crack in the middle, long before the circumferential failure."""
+    result = breaking("floe_165m", 16)
+    crack = first(result, "cell_failure")
+    assert crack.t_ns / 1e9 == pytest.approx(13.0, rel=0.05)
+    assert abs(crack.position[1]) < 1.5
+    assert not [e for e in result.events if e.kind in ("split", "circumferential")]
+
+
+@pytest.mark.slow
+def test_the_large_floe_breaks_around_the_structure():
+    """Section 6.3: 5.4 MN and 4.6 MN at the circumferential failure, Figure 6-10."""
+    failure = first(breaking("floe_165m", 28), "circumferential")
+    assert failure.force[0] == pytest.approx(5.4e6, rel=0.07)
+    assert failure.force[2] == pytest.approx(4.6e6, rel=0.07)
+
+
+@pytest.mark.slow
+def test_hard_contact_breaks_the_large_floe_early():
+    """Section 6.3.2: 2000 kPa gives 4.8 MN and 4.0 MN after a much shorter build-up, Figure 6-17."""
+    failure = first(breaking("floe_165m", 9, "contact.strength='2000 kPa'"), "circumferential")
+    assert failure.force[0] == pytest.approx(4.8e6, rel=0.10)
+    assert failure.force[2] == pytest.approx(4.0e6, rel=0.10)
+    assert failure.t_ns / 1e9 < 25.5 / 3
+
+
+@pytest.mark.slow
+def test_the_corner_of_the_small_floe_breaks_off():
+    """Section 6.4: 3.3 MN and 2.8 MN at 20.7 s, Figure 6-23."""
+    failure = first(breaking("floe_55m_corner", 24), "split")
+    assert failure.force[0] == pytest.approx(3.3e6, rel=0.05)
+    assert failure.force[2] == pytest.approx(2.8e6, rel=0.05)
+    assert failure.t_ns / 1e9 == pytest.approx(20.7, rel=0.05)
