@@ -25,7 +25,7 @@ class CrushedEdge:
 
     def lead(self, row: IntArray) -> Array:
         """Ice ahead of a node: half a cell inside the sheet, none at its first edge [m]."""
-        return np.where(row == self.nx - 1, 0.0, 0.5 * self.d)
+        return np.asarray(np.where(row == self.nx - 1, 0.0, 0.5 * self.d), np.float64)
 
     def length(self, row: IntArray) -> Array:
         """Extent of a node's ice along x [m]."""

@@ -54,8 +54,8 @@ class Event:
     """Something that happened to the sheet.
 
     ``kind`` is one of ``cell_failure`` (a first failure after a quiet window), ``split`` (the sheet falls into two
-    parts that both stay in the lattice), ``circumferential`` (a piece next to the structure breaks off),
-    ``hand_over`` (a fragment has become blocks).
+    parts that both stay in the lattice), ``circumferential`` (a piece in front of the structure
+    breaks off), ``hand_over`` (a fragment has become blocks).
     """
 
     t_ns: int

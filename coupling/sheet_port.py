@@ -57,13 +57,14 @@ class SheetPort:
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
         self._t, self._quiet, self._last_load = 0.0, True, np.zeros(3)
         self._fragments: list[Fragment] = []
+        self._at_structure: list[bool] = []
         self._renew_edge()
 
     # ---- one window -------------------------------------------------------------------------------------------
 
     def advance(self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array) -> SheetReport:
         """Moves the sheet over a window under the rubble's mean forces; ``rubble_load`` (3,) is for the events only."""
-        self._t, self._fragments = t_ns / NS, []
+        self._t, self._fragments, self._at_structure = t_ns / NS, [], []
         n = self.sheet.grid.nodes
         force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
         force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
@@ -81,6 +82,7 @@ class SheetPort:
 
     def _release(self, nodes: IntArray) -> None:
         self._fragments.append(self._fragment(nodes))
+        self._at_structure.append(bool(np.isin(nodes, self.contact.nodes).any()))
         self._renew_edge()
 
     def _renew_edge(self) -> None:
@@ -90,7 +92,7 @@ class SheetPort:
         column = np.flatnonzero(self.meets & (front >= 0))
         row = front[column]
         nodes = row * g.ny + column
-        x_front = np.asarray(g.xy[nodes, 0] + self.edge.lead(row), np.float64)
+        x_front = (g.xy[nodes, 0] + self.edge.lead(row)).astype(np.float64)
         self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
         self.front_column = column
 
@@ -205,23 +207,25 @@ class SheetPort:
         events = []
         if out.failed and self._quiet:
             where = self._cells_centre(out.failed)
-            events.append(self._event(t_ns, "cell_failure", load, len(out.failed), where, "ice begins to fail"))
+            text = "1 cell fails" if len(out.failed) == 1 else f"{len(out.failed)} cells fail"
+            events.append(self._event(t_ns, "cell_failure", load, len(out.failed), where, text))
         if out.parts > parts_before:
             text = f"the floe splits, {out.parts} parts stay in the lattice"
             events.append(self._event(t_ns, "split", load, len(out.failed), self._cells_centre(out.failed), text))
-        for piece, fragment in zip(out.pieces, self._fragments, strict=True):
-            events += self._piece_events(t_ns, load, len(out.failed), piece, fragment)
+        for fragment, at_structure in zip(self._fragments, self._at_structure, strict=True):
+            events += self._piece_events(t_ns, load, len(out.failed), fragment, at_structure)
         return events
 
-    def _piece_events(self, t_ns: int, load: Array, cells: int, piece: IntArray, f: Fragment) -> list[Event]:
+    def _piece_events(self, t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
         where = np.average(f.position, axis=0, weights=f.length * f.width)
-        size = f"{f.length[f.column == f.column[0]].sum():.1f} m"
+        length = max(float(f.length[f.column == c].sum()) for c in np.unique(f.column))
         area = float((f.length * f.width).sum())
-        text = f"a piece of {area:.0f} m2 and {f.mass.sum() / 1e3:.0f} t"
+        text = f"a piece of {area:.0f} m2, {f.mass.sum() / 1e3:.0f} t"
         events = []
-        if f.row.min() == 0 or self.meets[piece % self.sheet.grid.ny].any():
-            events.append(self._event(t_ns, "circumferential", load, cells, where, f"{text} breaks off ({size} long)"))
-        return [*events, self._event(t_ns, "hand_over", load, cells, where, f"{text} becomes rubble")]
+        if at_structure:
+            events.append(self._event(t_ns, "circumferential", load, cells, where,
+                                      f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"))
+        return [*events, self._event(t_ns, "hand_over", load, cells, where, f"{text}, becomes rubble")]
 
     def _cells_centre(self, cells: list[int]) -> Array:
         corners = self.sheet.grid.cell_nodes[cells].ravel()

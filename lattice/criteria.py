@@ -25,7 +25,7 @@ def mohr_factors(nu: float, strength_ratio: float) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def cell_strains(cell_nodes, d, u, q):  # type: ignore[no-untyped-def]
+def cell_strains(cell_nodes, d, u, q):
     """Membrane strain and curvature of each cell from node displacements u (n, 2) and q (n, 3).
 
     Returns (cells, 6): eps_11, eps_22, eps_12 [-] and eta_11, eta_22, eta_12 [1/m]; parallel connections are averaged.
@@ -44,7 +44,7 @@ def cell_strains(cell_nodes, d, u, q):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def mohr(strains, fibre):  # type: ignore[no-untyped-def]
+def mohr(strains, fibre):
     """Mean and radius of Mohr's circle at the top and at the bottom, (4.17)-(4.20): (cells, 4).
 
     ``fibre`` is h/2 times sigma_t / sigma_f [m]. Columns: mean and radius at the top, mean and radius at the bottom.

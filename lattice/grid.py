@@ -63,7 +63,7 @@ class Grid:
     @cached_property
     def area(self) -> Array:
         """Tributary area of each node: d^2 inside, 1/2 at an edge, 1/4 at a corner, (nodes,) [m2]."""
-        return np.bincount(self.cell_nodes.ravel(), minlength=self.nodes) * (self.d**2 / 4.0)
+        return np.asarray(np.bincount(self.cell_nodes.ravel(), minlength=self.nodes) * (self.d**2 / 4.0), np.float64)
 
     def node(self, i: int, j: int) -> int:
         return i * self.ny + j

@@ -75,7 +75,7 @@ class CrackedSystem:
         """K x of the springs of the intact cells, (n,)."""
         dof = self._dof[self._intact]
         force = x[dof] @ (self._rows.T @ self._rows / self._scale)
-        return np.bincount(dof.ravel(), weights=force.ravel(), minlength=len(x))
+        return np.bincount(dof.ravel(), weights=force.ravel(), minlength=len(x)).astype(np.float64, copy=False)
 
     def compliance(self, dof: IntArray) -> Array:
         """Rows and columns `dof` of the inverse, (m, m); zero for held ones."""
