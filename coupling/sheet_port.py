@@ -45,7 +45,7 @@ class SheetPort:
         self.sheet, self.velocity, self.columns_per_section = sheet, velocity, columns_per_section
         self.contact = OverlapContact(structure, law, velocity, ice.h, ice.freeboard)
         self.z_mid = ice.freeboard - 0.5 * ice.h  #: middle of the floating sheet [m]
-        y = g.y0 + np.arange(g.ny) * g.d
+        y = np.asarray(g.y0 + np.arange(g.ny) * g.d, np.float64)
         self.ice_y = y.copy()  #: middle of each column's ice [m]
         self.ice_y[[0, -1]] += 0.25 * g.d * np.array([1.0, -1.0])
         normal = structure.normal(self.ice_y, np.full(g.ny, ice.freeboard))
@@ -92,7 +92,7 @@ class SheetPort:
         column = np.flatnonzero(self.meets & (front >= 0))
         row = front[column]
         nodes = row * g.ny + column
-        x_front = (g.xy[nodes, 0] + self.edge.lead(row)).astype(np.float64)
+        x_front = g.xy[nodes, 0] + self.edge.lead(row)
         self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
         self.front_column = column
 
