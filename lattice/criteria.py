@@ -74,14 +74,28 @@ def combined_utilisation(strains: Array, limit: Array | float, ice: Ice) -> Arra
                       tensile_utilisation(circle[:, 2], circle[:, 3], limit, ice))
 
 
+RING = ((0, 0), (0, 1), (0, 2), (1, 2), (2, 2), (2, 1), (2, 0), (1, 0))  #: the eight neighbours, going round
+
+
+def crack_tips(grid: Grid, intact: np.ndarray) -> np.ndarray:
+    """Broken cells at which a crack ends, (cells,) bool.
+
+    Going round a tip, what is broken or outside the sheet is one gap of at most three of the eight neighbours. Along
+    the flanks of a crack, at its mouth and along a straight broken edge it is more, and strains do not concentrate.
+    """
+    free = np.pad(~intact.reshape(grid.nx - 1, grid.ny - 1), 1, constant_values=True)
+    ring = np.stack([free[i : i + grid.nx - 1, j : j + grid.ny - 1] for i, j in RING])
+    gaps = (ring & ~np.roll(ring, 1, axis=0)).sum(axis=0)
+    tip: np.ndarray = ~intact & (gaps.ravel() <= 1) & (ring.sum(axis=0).ravel() <= 3)
+    return tip
+
+
 def tensile_limits(grid: Grid, intact: np.ndarray, ice: Ice) -> Array:
-    """Tensile limit of each cell: sigma_t, and the limit (4.31) for the eight neighbours of a broken cell [Pa]."""
-    broken = ~intact.reshape(grid.nx - 1, grid.ny - 1)
-    padded = np.pad(broken, 1)
-    beside = np.zeros_like(broken)
-    for di in range(3):
-        for dj in range(3):
-            beside |= padded[di : di + grid.nx - 1, dj : dj + grid.ny - 1]
+    """Tensile limit of each cell: sigma_t, and the limit (4.31) for the eight neighbours of a crack tip [Pa]."""
+    tip = np.pad(crack_tips(grid, intact).reshape(grid.nx - 1, grid.ny - 1), 1)
+    beside = np.zeros((grid.nx - 1, grid.ny - 1), bool)
+    for i, j in RING:
+        beside |= tip[i : i + grid.nx - 1, j : j + grid.ny - 1]
     limits = np.full(grid.cells, ice.sigma_t)
     if beside.any():
         limits[beside.ravel()] = ice.stress_beside_crack(grid.d)

@@ -70,7 +70,7 @@ class Sheet:
 
     def _utilisation(self, state: State) -> Array:
         strains = cell_strains(self.grid.cell_nodes, self.grid.d, state.u, state.q)
-        utilisation = combined_utilisation(strains, tensile_limits(self.grid, self.intact, self.ice), self.ice)
+        utilisation = combined_utilisation(strains, tensile_limits(self.grid, self.live_cells, self.ice), self.ice)
         if not np.isfinite(utilisation).all():
             raise FloatingPointError("the sheet's motion is not finite: use a shorter window (coupling.window)")
         return np.where(self.live_cells, utilisation, 0.0)
