@@ -8,14 +8,15 @@ after phi -> i phi, so eigenfrequencies, dispersion and forced response share on
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lattice.grid import Array
 from lattice.ice import Ice
 
 
-def plate_stiffness(ice: Ice, kx: Array | float, ky: Array | float) -> Array:
+def plate_stiffness(ice: Ice, kx: ArrayLike, ky: ArrayLike) -> Array:
     """Stiffness of the plate alone per unit area for (w, phi_x, phi_y) at wave numbers kx, ky [1/m], (..., 3, 3)."""
-    kx, ky = np.broadcast_arrays(np.asarray(kx, float), np.asarray(ky, float))
+    kx, ky = np.broadcast_arrays(np.asarray(kx, dtype=np.float64), np.asarray(ky, dtype=np.float64))
     S, D, nu = ice.shear_stiffness, ice.D, ice.nu
     K = np.empty((*kx.shape, 3, 3))
     K[..., 0, 0] = S * (kx**2 + ky**2)
@@ -33,7 +34,7 @@ def plate_mass(ice: Ice) -> Array:
     return m * np.array([1.0, ice.h**2 / 12.0, ice.h**2 / 12.0])
 
 
-def dispersion(ice: Ice, kx: Array | float, ky: Array | float) -> Array:
+def dispersion(ice: Ice, kx: ArrayLike, ky: ArrayLike) -> Array:
     """Angular frequencies of the three branches, roots of the determinant of (2.43)-(2.45), (..., 3) [rad/s], rising.
 
     At long waves the first is the deflection wave, the other two are the rotational waves.
@@ -47,9 +48,8 @@ def dispersion(ice: Ice, kx: Array | float, ky: Array | float) -> Array:
 def eigenfrequencies(ice: Ice, Lx: float, Ly: float, count: int) -> Array:
     """Lowest frequencies of the simply supported plate on the foundation, (count,) [Hz]; left column of Table 2-2."""
     order = count + 1  # mode (m, n) has at least m*n - 1 modes below it, so count of each is enough
-    m, n = np.indices((order, order)) + 1.0
-    kx: Array = m * (np.pi / Lx)
-    ky: Array = n * (np.pi / Ly)
+    m, n = np.indices((order, order)) + 1
+    kx, ky = (m * np.pi / Lx).astype(np.float64), (n * np.pi / Ly).astype(np.float64)
     branch = dispersion(ice, kx, ky)[..., 0]
     return np.sort(branch.ravel())[:count] / (2.0 * np.pi)
 

@@ -3,6 +3,7 @@
 All with Poisson's ratio 1/3, sigma_c = 5 sigma_f and one mesh: 4 cells over the width of the beam (5 nodes, Figure
 4-16a), plate twice as long as the beam and clamped. Mean and radius at the root are averages over the four
 connections, as (4.24) and (4.25) ask. The eta_mean and R_eta printed for Table 4-4 are exchanged in the thesis.
+``dt`` is the time step of Figure 4-18; 0 takes nine tenths of the stable one.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from lattice.properties import brine_volume, youngs_modulus
 from lattice.specimens import Piece, beam_strain, cantilever, factor_f
 
 PARAMETERS: dict[str, Any] = {"L_b": 2.30, "w": 0.46, "h": 0.39, "E": 1.3e9, "nu": 1.0 / 3.0, "sigma_f": 0.186e6,
-                              "rho_i": 920.0, "rho_w": 1025.0, "ratio": 5.0, "cells": 4, "dynamic": True}
+                              "rho_i": 920.0, "rho_w": 1025.0, "ratio": 5.0, "cells": 4, "dynamic": True, "dt": 0.0}
 #: change to the base case and f of Table 4-3
 TABLE_4_3: dict[str, tuple[dict[str, float], float]] = {
     "base case": ({}, 0.80), "1.5 x length": ({"L_b": 1.5}, 0.80), "2 x thickness": ({"h": 2.0}, 0.84),
@@ -33,7 +34,7 @@ def ice_of(p: dict[str, Any]) -> Ice:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
-    known = {**p, "dynamic": True} == PARAMETERS
+    known = {**p, "dynamic": True, "dt": 0.0} == PARAMETERS
     figures = [_figure_17(p)]
     quantities = _table_4_2(p, known)
     if any(p[key] != PARAMETERS[key] for key in ("L_b", "w", "h", "E")):  # a beam of the user's own: f and deflection

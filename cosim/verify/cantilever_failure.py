@@ -33,7 +33,7 @@ def history(p: dict[str, Any], failure_load: float, quick: bool) -> tuple[Array,
     f = factor_f(bare, p["L_b"], p["w"], int(p["cells"]), p["ratio"])
     ice = replace(bare, beam_test=BeamTest(p["L_b"], p["w"], failure_load, f))
     piece = cantilever(ice, p["L_b"], p["w"], int(p["cells"]))
-    moving = MovingPiece(piece, c=hydrodynamic_damping(ice, 0.1))
+    moving = MovingPiece(piece, c=hydrodynamic_damping(ice, 0.1), dt=p["dt"] or None)
     root = piece.root[0] * (piece.grid.ny - 1) + piece.root[1] + np.arange(piece.root[2])
     return _march(moving, root, Strength(ice), 0.8 if quick else 1.0)
 

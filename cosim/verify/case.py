@@ -74,6 +74,11 @@ def near(name: str, number: Any, unit: str, reference: Any, tolerance: float, so
     return Quantity(name, plain(number), unit, plain(reference), source, tolerance, measure, ok)
 
 
+def limited(name: str, number: Any, unit: str, limit: float, source: str, known: bool) -> Quantity:
+    """`at_most` with the parameters of the source, a plain value with others."""
+    return at_most(name, number, unit, limit, source) if known else value(name, number, unit)
+
+
 def at_most(name: str, number: Any, unit: str, limit: float, source: str) -> Quantity:
     """Every entry at most ``limit``: errors and residuals, whose reference is zero."""
     ok = bool(np.all(np.abs(np.asarray(number, float)) <= limit))

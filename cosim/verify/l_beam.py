@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
+from cosim.verify.case import CaseResult, Figure, Quantity, limited, near, value
 from lattice.grid import Array
 from lattice.ice import Ice
 from lattice.limits import CellState, Strength, bending_bottom, bending_top, out_of_plane_shear
@@ -65,8 +65,9 @@ def _place(p: dict[str, Any], piece: Piece, field: Array, known: bool) -> list[Q
     column, first, count = piece.root
     place = [(i + 0.5 - column) * p["d"], (j + 0.5 - first - 0.5 * count) * p["d"]]
     corner = [p["L_1"], 0.5 * p["width"]]
+    pattern = f"{SOURCE}: inner corner of the L (crack pattern 2)"
     return [near("place of the highest bending utilisation: from the root, to the side", place, "m",
-                 corner if known else None, 1.01 * p["d"], f"{SOURCE}: inner corner of the L (crack pattern 2)", "absolute"),
+                 corner if known else None, 1.01 * p["d"], pattern, "absolute"),
             value("highest bending utilisation", float(np.nanmax(field)), "-")]
 
 
@@ -74,7 +75,7 @@ def _rows(bending: Array, shear: Array, known: bool) -> list[Quantity]:
     first = float(1.0 / bending[0].min())
     side_a = float(np.argmax(bending[0]))
     quiet = "inverse of the smallest utilisation in the first row (every cell beyond its strength: below 1)"
-    return [at_most(quiet, first, "-", 1.0, SOURCE) if known else value(quiet, first, "-"),
+    return [limited(quiet, first, "-", 1.0, SOURCE, known),
             near("cell of the first row with the highest utilisation (corner A, outer side: 0)", side_a, "-",
                  0.0 if known else None, 0.0, SOURCE, "absolute"),
             value("largest shear over shear strength in the three rows", float(shear.max()), "-")]

@@ -8,7 +8,7 @@ from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.spectrum import Plate
 from lattice.statics import all_around
-from lattice.stiffness import STIFFNESS_SETS
+from lattice.stiffness import STIFFNESS_SETS, Springs
 
 TABLE_2_1: dict[str, Any] = {"Lx": 60.0, "Ly": 100.0, "E": 3.0e9, "nu": 0.3, "h": 1.5, "rho_i": 900.0, "rho_w": 1025.0,
                              "g": 9.81, "stiffness": "equations-matching"}
@@ -18,14 +18,17 @@ def ice_of(p: dict[str, Any]) -> Ice:
     return Ice(E=p["E"], nu=p["nu"], h=p["h"], rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"])
 
 
-def plate_of(p: dict[str, Any], nodes: tuple[int, int], stiffness: str | None = None) -> Plate:
+def springs_of(p: dict[str, Any], ice: Ice) -> Springs:
+    """Stiffnesses of the set that p["stiffness"] names."""
+    if p["stiffness"] not in STIFFNESS_SETS:
+        raise ValueError(f"unknown stiffness set {p['stiffness']!r}: use {' or '.join(STIFFNESS_SETS)}")
+    return STIFFNESS_SETS[p["stiffness"]](ice)
+
+
+def plate_of(p: dict[str, Any], nodes: tuple[int, int]) -> Plate:
     """Simply supported lattice of nx x ny nodes."""
-    name = stiffness or p["stiffness"]
-    if name not in STIFFNESS_SETS:
-        raise ValueError(f"unknown stiffness set {name!r}: use {' or '.join(STIFFNESS_SETS)}")
-    grid = Grid.rectangle(p["Lx"], p["Ly"], *nodes)
     ice = ice_of(p)
-    return Plate.build(grid, ice, STIFFNESS_SETS[name](ice), all_around("simple"))
+    return Plate.build(Grid.rectangle(p["Lx"], p["Ly"], *nodes), ice, springs_of(p, ice), all_around("simple"))
 
 
 def load_node(p: dict[str, Any], grid: Grid) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -37,18 +38,31 @@ def merged(case: str, defaults: Mapping[str, Any], changes: Mapping[str, Any]) -
             close = difflib.get_close_matches(key, defaults, 1)
             hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(defaults)}"
             raise ValueError(f"{case} has no parameter {key}: {hint}")
-        if _kind(new) != _kind(defaults[key]) or (isinstance(new, list) and not new):
+        if not _fits(new, defaults[key]):
             raise ValueError(f"{case}: {key} = {json.dumps(new)} must be a {_kind(defaults[key])}, "
                              f"for example {json.dumps(defaults[key])}")
     return {**defaults, **changes}
 
 
+def _fits(new: Any, default: Any) -> bool:
+    """Same kind as the default; counts stay whole numbers above zero, numbers finite, lists full of numbers."""
+    if isinstance(new, list) and isinstance(default, list):
+        return bool(new) and all(_fits(x, x if isinstance(x, list) else 0.0) for x in new)
+    if _kind(default) == "whole number above 0":
+        return _kind(new) == _kind(default) and new > 0
+    if _kind(default) == "number":
+        return _kind(new) in ("number", "whole number above 0") and math.isfinite(new)
+    return _kind(new) == _kind(default)
+
+
 def _kind(value: Any) -> str:
     if isinstance(value, bool):
-        return "switch"
-    if isinstance(value, int | float):
+        return "switch, true or false"
+    if isinstance(value, int):
+        return "whole number above 0"
+    if isinstance(value, float):
         return "number"
-    return "list" if isinstance(value, list) else "text"
+    return "list of numbers" if isinstance(value, list) else "text"
 
 
 def meshes(nodes: list[Any]) -> list[tuple[int, int]]:
