@@ -9,11 +9,11 @@ import scipy.sparse as sp
 
 from lattice.grid import Array, IntArray
 from lattice.ice import Ice
-from lattice.limits import CellState
 from lattice.specimens import Piece
 from lattice.statics import free_dof, ice_area, out_of_plane_stiffness
 from lattice.stepper import Stepper, critical_step
 from lattice.stiffness import hrennikoff
+from lattice.strain import CellState
 
 
 @dataclass

@@ -11,8 +11,8 @@ import numpy as np
 from lattice.assembly import in_plane_springs, out_of_plane_springs
 from lattice.grid import Array, Grid
 from lattice.ice import Ice
-from lattice.limits import CellState
 from lattice.stiffness import Springs
+from lattice.strain import CellState
 
 OUTWARD = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])  #: sides on which nodes 0-3 lie
 

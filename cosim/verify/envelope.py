@@ -15,15 +15,8 @@ from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
 from cosim.verify.plate import springs_of
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import (
-    CellState,
-    Strength,
-    bending_bottom,
-    bending_top,
-    compression,
-    spalling,
-    tension,
-)
+from lattice.limits import Strength, bending_bottom, bending_top, compression, spalling, tension
+from lattice.strain import CellState
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 
 PARAMETERS: dict[str, Any] = {"sigma_t": 0.6e6, "sigma_c": 5.0e6, "sigma_spall": -28.0e6, "E": 5.0e9, "nu": 1.0 / 3.0,

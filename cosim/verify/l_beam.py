@@ -13,8 +13,9 @@ import numpy as np
 from cosim.verify.case import CaseResult, Figure, Quantity, limited, near, value
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import CellState, Strength, bending_bottom, bending_top, out_of_plane_shear
+from lattice.limits import Strength, bending_bottom, bending_top, out_of_plane_shear
 from lattice.specimens import Piece, l_beam
+from lattice.strain import CellState
 
 PARAMETERS: dict[str, Any] = {"L_1": 1.05, "L_2": 1.95, "width": 0.55, "h": 0.565, "F": 6.0e3, "E": 1.4e9, "nu": 0.3,
                               "sigma_f": 0.339e6, "sigma_shear": 0.7e6, "ratio": 5.0, "rho_i": 920.0, "rho_w": 1025.0,

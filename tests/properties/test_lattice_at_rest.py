@@ -12,9 +12,17 @@ import scipy.sparse as sp
 from lattice.assembly import assemble, in_plane_springs, out_of_plane_springs
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
-from lattice.limits import CRITERIA, CellState, Connections, Strength, tension
-from lattice.statics import SUPPORTS, held_out_of_plane, out_of_plane_stiffness, solve
+from lattice.limits import CRITERIA, Strength, tension
+from lattice.statics import (
+    SUPPORTS,
+    held_in_plane,
+    held_out_of_plane,
+    in_plane_stiffness,
+    out_of_plane_stiffness,
+    solve,
+)
 from lattice.stiffness import STIFFNESS_SETS
+from lattice.strain import CellState, Connections
 
 GRID = Grid(6, 7, 2.0)
 SETS = sorted(STIFFNESS_SETS)
@@ -126,6 +134,16 @@ def answer(K, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:  # type: ignor
 def test_a_mirrored_load_gives_a_mirrored_deflection(name: str, support: str) -> None:
     K = out_of_plane_stiffness(GRID, ice(0.25), STIFFNESS_SETS[name](ice(0.25)))
     one, other = answer(K, held_out_of_plane(GRID, {"x-": support}))
+    assert np.abs(mirror(GRID, one) - other).max() < 1e-10 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("support", ["clamped", "held"])
+@pytest.mark.parametrize("name", SETS)
+def test_a_mirrored_load_gives_a_mirrored_displacement_in_plane(name: str, support: str) -> None:
+    K = in_plane_stiffness(GRID, STIFFNESS_SETS[name](ice(0.25)))
+    load, held = np.zeros((GRID.nodes, 2)), held_in_plane(GRID, {"x-": support})
+    load[GRID.node(4, 1)] = 1e6, -3e6
+    one, other = (solve(K, f.ravel(), held).reshape(-1, 2) for f in (load, mirror(GRID, load)))
     assert np.abs(mirror(GRID, one) - other).max() < 1e-10 * np.abs(one).max()
 
 

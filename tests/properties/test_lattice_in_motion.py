@@ -12,10 +12,11 @@ import scipy.sparse as sp
 from lattice.assembly import assemble, in_plane_mass, in_plane_springs, out_of_plane_mass, out_of_plane_springs
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
-from lattice.limits import CRITERIA, CellState, Strength
+from lattice.limits import CRITERIA, Strength
 from lattice.statics import SUPPORTS, all_around, held_in_plane, held_out_of_plane, out_of_plane_stiffness
 from lattice.stepper import Stepper, critical_step
 from lattice.stiffness import STIFFNESS_SETS
+from lattice.strain import CellState
 
 GRID = Grid(6, 7, 2.0)
 SETS = sorted(STIFFNESS_SETS)
@@ -81,6 +82,29 @@ def test_a_free_plate_keeps_its_momentum_in_plane(name: str, nu: float) -> None:
     change = change_of_momenta(K, in_plane_mass(GRID, ice()), True)
     assert change[:2].max() < 1e-9
     assert change[2] < 1e-9 if nu == 1.0 / 3.0 else change[2] > 1e-6
+
+
+@pytest.mark.parametrize("support", sorted(SUPPORTS))
+def test_a_supported_plate_gives_its_momentum_to_the_support(support: str) -> None:
+    """Momentum of the plate plus impulse of the reactions (force and moment of each held node) stays what it was."""
+    K = assemble(GRID, out_of_plane_springs(STIFFNESS_SETS["hrennikoff"](ice()), GRID.d)).tocsr()
+    mass, held = out_of_plane_mass(GRID, ice()), held_out_of_plane(GRID, {"x-": support})
+    free = np.setdiff1d(np.arange(len(mass)), held)
+    stepper = Stepper(K[free][:, free], 0.0 * K[free][:, free], mass[free], 1e-5)
+    stepper.start(rough(len(free)), 10.0 * rough(len(free)), np.zeros(len(free)))
+    velocity, impulse, q = np.zeros(len(mass)), np.zeros(len(mass)), np.zeros(len(mass))
+    velocity[free] = stepper.v
+    before, scale = momenta(mass, velocity, False), largest_momenta(mass, velocity, False)
+    for _ in range(100):
+        q[free] = stepper.q
+        impulse[held] += stepper.dt * (K @ q)[held]
+        stepper.run(1, lambda t: np.zeros(len(free)))
+    velocity[free] = stepper.v
+    after = momenta(mass, velocity, False)
+    given = momenta(np.ones(len(mass)), impulse, False)
+    assert (np.abs(after - given - before) / scale).max() < 1e-9
+    if len(held):
+        assert (np.abs(after - before) / scale).max() > 1e-6  # the wrong twin: without the reactions
 
 
 def test_a_spring_that_pulls_one_end_only_is_rejected() -> None:

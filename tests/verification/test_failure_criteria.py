@@ -10,8 +10,9 @@ import pytest
 from lattice.criteria import combined_utilisation
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
-from lattice.limits import CRITERIA, CellState, Strength, circle, circle_of_connections
+from lattice.limits import CRITERIA, Strength
 from lattice.stiffness import hrennikoff
+from lattice.strain import CellState, circle, circle_of_connections
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 
 ICE = Ice(E=5e9, nu=1.0 / 3.0, h=1.2, rho_i=900.0, rho_w=1025.0, sigma_t=0.6e6, sigma_f=0.9e6, sigma_c=5e6,
