@@ -39,11 +39,8 @@ class RubblePort:
             outline = structure.section_outline(y, bottom, top, OUTLINE_TOLERANCE)
             return convex_parts(outline, back=None if structure.revolved else float(outline[:, 0].max()) + 100.0)
 
-        def ratio(y: float, x: float, z: float) -> float:
-            return float(structure.lateral_ratio(y, x, z))
-
-        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, ratio=ratio, domain=domain,
-                                 threads=threads)
+        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, revolved=structure.revolved,
+                                 domain=domain, threads=threads)
         self.physics, self.columns_per_section = physics, columns_per_section
         self._edges: dict[int, SheetEdge] = {}
         self._forces = SheetForces.none()
@@ -68,10 +65,8 @@ class RubblePort:
         if len(polygon) < 3 or _area(polygon) < SMALLEST * self.physics.thickness**2:
             return 0.0
         number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
-                                      (b.velocity[0], b.velocity[2]), b.omega, b.y, self._fragments, b.angle)
-        block = next(b for b in self.layer.section(key).blocks if b.id == number)
-        block.v_y = float(b.velocity[1])
-        return float(block.mass)
+                                      b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
+        return self.layer.block(number).mass
 
     def sections_in_use(self) -> list[int]:
         """Sections that hold blocks or are next to one: those that must know where the sheet is."""
@@ -118,8 +113,7 @@ class RubblePort:
 
     def load(self) -> Array:
         """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
-        t = self.layer.table()
-        return np.array([t.load[t.phase == phase].sum(axis=0) for phase in Phase]).reshape(3, 3)
+        return self.layer.load_by_phase(list(Phase))
 
     @property
     def mass(self) -> float:

@@ -8,57 +8,118 @@ from math import atan2, cos, sin
 import numpy as np
 import pymunk
 
-from rubble.geometry import Array, contiguous, is_convex, moments, place
+from rubble.friction import ICE
+from rubble.geometry import Array, clip, contiguous, is_convex, moments, place
 from rubble.physics import RubblePhysics
-from rubble.water import inertia, strips, wetted_edges
+from rubble.prism import inertia, strips, wetted_edges
 
 ROTATING, SLIDING = 1, 2  #: phases of a block, the numbers of `coupling.interface.Phase`
 
 
+@dataclass(frozen=True, slots=True)
+class Prism:
+    """What follows from a block's outline and its strips; body frame, about the centre of mass."""
+
+    polygon: Array  #: (k, 2) outline, counter-clockwise
+    edges: Array  #: (e, 6) wetted edges, see `water`
+    mass: float  #: true mass [kg]
+    inertia: float  #: true moment of inertia about the y axis [kg m^2]
+    width: float  #: mean extent along y [m]
+    area: float  #: of the outline [m^2]
+    reach: float  #: of the farthest corner from the centre [m]
+    long_axis: float  #: direction of the long axis [rad]
+    slender: bool  #: long and short extent differ by more than 20 %; else both axes count as long
+    parts: list[Array]  #: strips of the outline
+    cuts: Array  #: (s + 1,) where the strips begin and end along body x [m]
+    widths: Array  #: (s,) their widths along y [m]
+
+
 @dataclass(slots=True, eq=False)
 class Block:
-    """One block. Masses in kg, lengths in m; body-frame quantities about the centre of mass."""
+    """One block: its prism, its body in pymunk, and its state across the section."""
 
     id: int  #: number of the block, never reused
     fragment: int  #: number of the fragment it came from
     body: pymunk.Body  #: carries mass + added mass
     shape: pymunk.Poly
-    polygon: Array  #: (k, 2) outline in the body frame, counter-clockwise
-    edges: Array  #: (e, 5) wetted edges, see `water`
-    mass: float  #: true mass
-    inertia: float  #: true moment of inertia about the y axis [kg m^2]
-    width: float  #: mean extent along y
-    area: float  #: of the outline [m^2]
-    long_axis: float  #: direction of the long axis in the body frame [rad]
-    slender: bool  #: long and short extent differ by more than 20 %; else both axes count as long
-    parts: list[Array]  #: strips of the outline in the body frame
-    widths: Array  #: (s,) their widths along y
+    prism: Prism
     y: float
     v_y: float = 0.0
     aligned: bool = False  #: its long axis has once aligned with the slope
     phase: int = ROTATING
+    flooded: float = 1.0  #: share of its head of water that the top carries
+    load: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: mean force on the structure over the last window [N]
+    thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: constant force and moment beside the weight [N, N, N m]
+
+    @property
+    def mass(self) -> float:
+        """True mass [kg]."""
+        return self.prism.mass
+
+    @property
+    def outline(self) -> Array:
+        """(k, 2) corners in world x, z [m]."""
+        return place(self.prism.polygon, *self.body.position, self.body.angle, 0.0, 0.0)
 
 
 def make_block(number: int, physics: RubblePhysics, polygon: Array, cuts: Array, widths: Array, density: float,
-               velocity: tuple[float, float], omega: float, y: float, fragment: int, angle: float) -> Block:
+               velocity: tuple[float, float], omega: float, y: float, fragment: int, angle: float,
+               flooded: float = 1.0) -> Block:
     """A block from its outline in world coordinates; ``cuts`` (s + 1,) are places along the axis at ``angle`` [m]."""
-    own = place(_checked(polygon), 0.0, 0.0, -angle, 0.0, 0.0)
+    prism, (cx, cz) = make_prism(place(_checked(polygon), 0.0, 0.0, -angle, 0.0, 0.0), cuts, widths, density)
+    body = pymunk.Body(1.0, 1.0)
+    _set_inertia(body, prism, physics, density)
+    body.position = (cos(angle) * cx - sin(angle) * cz, sin(angle) * cx + cos(angle) * cz)
+    body.angle, body.velocity, body.angular_velocity = angle, (float(velocity[0]), float(velocity[1])), float(omega)
+    shape = pymunk.Poly(body, [(float(a), float(b)) for a, b in prism.polygon])
+    shape.elasticity, shape.collision_type = physics.restitution**0.5, ICE
+    return Block(number, fragment, body, shape, prism, y, flooded=flooded)
+
+
+def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[Prism, tuple[float, float]]:
+    """The prism of an outline turned so that its axis lies along x, and where its centre of mass was."""
     cuts, widths = _checked_strips(own, cuts, widths)
     parts = strips(own, cuts, widths)
     volume, cx, cz, polar = inertia(parts, widths)
     shift = np.array([cx, cz])
-    parts = [p - shift for p in parts]
+    parts, own, area = [p - shift for p in parts], own - shift, float(moments(own)[0])
     edges = wetted_edges(parts, cuts - cx, widths)
-    mass, moment, area = density * volume, density * polar, float(moments(own)[0])
-    added = physics.rho_w * volume
-    body = pymunk.Body(mass + physics.added_mass * added, moment + physics.added_inertia * physics.rho_w * polar)
-    body.position = (cos(angle) * cx - sin(angle) * cz, sin(angle) * cx + cos(angle) * cz)
-    body.angle, body.velocity, body.angular_velocity = angle, (float(velocity[0]), float(velocity[1])), float(omega)
-    shape = pymunk.Poly(body, [(float(a), float(b)) for a, b in own - shift])
-    shape.friction, shape.elasticity = physics.mu_ice_ice**0.5, physics.restitution**0.5
-    axis, slender = _long_axis(own - shift)
-    return Block(number, fragment, body, shape, own - shift, edges, mass, moment, volume / area, area, axis, slender,
-                 parts, widths, y)
+    axis, slender = _long_axis(own)
+    prism = Prism(own, edges, density * volume, density * polar, volume / area, area,
+                  float(np.hypot(*own.T).max()), axis, slender, parts, cuts - cx, widths)
+    return prism, (cx, cz)
+
+
+def cut_block(block: Block, physics: RubblePhysics, nx: float, nz: float, c: float) -> float:
+    """Take off what lies on ``nx x + nz z > c`` in the body frame; returns its mass [kg], 0 if less than two corners.
+
+    The rest moves on as the part of a rigid body that it is: same rotation, its own centre's velocity.
+    """
+    density = block.mass / (block.prism.area * block.prism.width)
+    rest = clip(block.prism.polygon, nx, nz, c)
+    if len(rest) < 3 or moments(rest)[0] < 1e-6 * block.prism.area:
+        return 0.0
+    before = block.mass
+    block.prism, (cx, cz) = make_prism(_distinct(rest), block.prism.cuts, block.prism.widths, density)
+    body, angle, om = block.body, block.body.angle, block.body.angular_velocity
+    dx, dz = cos(angle) * cx - sin(angle) * cz, sin(angle) * cx + cos(angle) * cz
+    (x, z), (vx, vz) = body.position, body.velocity
+    body.position, body.velocity = (x + dx, z + dz), (vx - om * dz, vz + om * dx)
+    _set_inertia(body, block.prism, physics, density)
+    block.shape.unsafe_set_vertices([(float(a), float(b)) for a, b in block.prism.polygon])
+    return before - block.mass
+
+
+def _set_inertia(body: pymunk.Body, prism: Prism, physics: RubblePhysics, density: float) -> None:
+    water = physics.rho_w / density
+    body.mass = prism.mass * (1.0 + physics.added_mass * water)
+    body.moment = prism.inertia * (1.0 + physics.added_inertia * water)
+
+
+def _distinct(polygon: Array) -> Array:
+    """Without corners that fall together."""
+    gap = np.abs(polygon - np.roll(polygon, 1, axis=0)).max(axis=1)
+    return np.ascontiguousarray(polygon[gap > 1e-6 * np.abs(polygon).max()])
 
 
 def _checked(polygon: Array) -> Array:

@@ -1,118 +1,24 @@
-"""Contact impulses of a section, point by point, summed over every sub-step of a window.
+"""Sums of the contact impulses of a section over the sub-steps of a window.
 
-pymunk's batch interface gives one impulse per pair of shapes; the moment on the sheet needs the share of each contact
-point. The impulse solver keeps it (``cpContact.jnAcc``, ``jtAcc``), so a compiled callback reads it from the arbiters,
-at the offsets that cffi reports for the installed pymunk. Body b receives ``j = jn n + jt perp(n)``, body a ``-j``; the
-normal n points from a to b.
-
-Sums are formed in the order of block numbers and places, never in pymunk's, which may follow memory addresses.
+They are formed in the order of block numbers and places, never in pymunk's, which may follow memory addresses.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numba import carray, cfunc, njit, types
-from numba.core import cgutils
-from numba.extending import intrinsic
-from numpy.typing import NDArray
-from pymunk._chipmunk_cffi import ffi, lib
+from numba import njit
 
+from rubble.arbiters import CONTACT_COLUMNS
+from rubble.friction import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, shares, slot_of, tilt
 from rubble.geometry import Array
+from rubble.pointers import IntArray
 
-IntArray = NDArray[np.int64]
-
-STRUCTURE, SHEET = -1, -2  #: slots of the bodies that are no blocks
-_UNKNOWN = -3
-
-#: columns of a contact row: point on a and on b relative to the body's centre, impulse on b, impulse along the
-#: normal, x component of the normal impulse on b
-CONTACT_COLUMNS = 8
-#: columns of the sums of a block over a window [N s]: impulse on the structure x, z; its normal part in x; sum of
-#: normal impulses on the structure; on other ice; normal impulse times the point's x, z; impulse with the sheet
-SUM_COLUMNS = 8
-
-
-def _as_pointer(typingctx: Any, address: Any) -> Any:
-    """An int64 address as a pointer that `carray` accepts."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.inttoptr(args[0], cgutils.voidptr_t)
-
-    return types.voidptr(types.int64), codegen
-
-
-_pointer: Any = intrinsic(_as_pointer)
-
-
-def _offsets() -> IntArray:
-    """Where arbiter and contact keep what is read here, in bytes."""
-    arbiter, contact = ffi.typeof("cpArbiter"), ffi.typeof("struct cpContact")
-    fields = [ffi.offsetof(arbiter, n) for n in ("body_a", "body_b", "count", "contacts", "n", "state")]
-    fields += [ffi.offsetof(contact, n) for n in ("r1", "r2", "jnAcc", "jtAcc")]
-    return np.array([*fields, ffi.sizeof(contact)], dtype=np.int64)
-
-
-@cfunc("void(voidptr, voidptr)", cache=True)
-def _read_arbiter(arbiter: Any, header: Any) -> None:
-    """Append the contacts of one arbiter. header: [rows, capacity, address of bodies, of values, offsets (11)]."""
-    h = carray(header, 15, np.int64)
-    at = carray(arbiter, 1024, np.uint8)
-    base = at.ctypes.data
-    count = carray(_pointer(base + h[6]), 1, np.int32)[0]
-    state = carray(_pointer(base + h[9]), 1, np.int32)[0]
-    if state > 1:  # 0 first contact, 1 persisting; ignored, cached and invalidated arbiters carry no impulse
-        return
-    n = carray(_pointer(base + h[8]), 2, np.float64)
-    start = carray(_pointer(base + h[7]), 1, np.int64)[0]
-    bodies, values = carray(_pointer(h[2]), (h[1], 2), np.int64), carray(_pointer(h[3]), (h[1], 8), np.float64)
-    for k in range(count):
-        row = h[0]
-        h[0] += 1
-        if row >= h[1]:
-            continue  # counted, so that the caller can enlarge the table
-        c = start + k * h[14]
-        r1, r2 = carray(_pointer(c + h[10]), 2, np.float64), carray(_pointer(c + h[11]), 2, np.float64)
-        jn, jt = carray(_pointer(c + h[12]), 1, np.float64)[0], carray(_pointer(c + h[13]), 1, np.float64)[0]
-        bodies[row, 0] = carray(_pointer(base + h[4]), 1, np.int64)[0]
-        bodies[row, 1] = carray(_pointer(base + h[5]), 1, np.int64)[0]
-        values[row, 0], values[row, 1], values[row, 2], values[row, 3] = r1[0], r1[1], r2[0], r2[1]
-        values[row, 4], values[row, 5] = jn * n[0] - jt * n[1], jn * n[1] + jt * n[0]
-        values[row, 6], values[row, 7] = jn, jn * n[0]
-
-
-class ContactReader:
-    """Reads all contact points of a space after a step."""
-
-    def __init__(self, capacity: int = 256) -> None:
-        #: see `_read_arbiter`; 15 and 16 are the addresses of callback and header, for the compiled loop
-        self.header = np.zeros(17, np.int64)
-        self.header[4:15] = _offsets()
-        self.header[15], self.header[16] = int(_read_arbiter.address or 0), self.header.ctypes.data
-        self._call = ffi.cast("void (*)(cpArbiter *, void *)", _read_arbiter.address)
-        self._allocate(capacity)
-
-    def _allocate(self, capacity: int) -> None:
-        self.bodies = np.zeros((capacity, 2), np.int64)
-        self.values = np.zeros((capacity, CONTACT_COLUMNS))
-        self.header[1:4] = capacity, self.bodies.ctypes.data, self.values.ctypes.data
-        self._data = ffi.cast("void *", self.header.ctypes.data)
-
-    def read(self, space: Any) -> int:
-        """Fill ``bodies`` (addresses) and ``values``; returns the number of contact points."""
-        self.header[0] = 0
-        lib.cpSpaceEachCachedArbiter(space._space, self._call, self._data)
-        if self.header[0] > self.header[1]:
-            self._allocate(2 * int(self.header[0]))
-            return self.read(space)
-        return int(self.header[0])
-
-
-@njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True)
-def _slot(address: int, addresses: IntArray, slots: IntArray) -> int:
-    i = np.searchsorted(addresses, address)
-    return slots[i] if i < len(addresses) and addresses[i] == address else _UNKNOWN
+#: columns of the sums of a block over a window [N s]: impulse on the structure x, z; side impulse N n_y of the
+#: structure on the block; mu N of the structure; mu N weighted with 1 / p; normal impulses on other ice; with the sheet
+SUM_COLUMNS = 7
+#: columns of an overloaded pair over a window: slots a and b, sub-steps, impulse along the normal, its x and z part on
+#: b, length of the contact weighted with the impulse
+HEAVY_COLUMNS = 7
 
 
 @njit("boolean(int64[::1], float64[::1], int64[::1], float64[::1])", cache=True, nogil=True)
@@ -143,18 +49,23 @@ def _order(n: int, pair: IntArray, values: Array) -> IntArray:
 def _swap(pair: IntArray, v: Array) -> None:
     pair[0], pair[1] = pair[1], pair[0]
     v[0], v[1], v[2], v[3] = v[2], v[3], v[0], v[1]
-    v[4], v[5], v[7] = -v[4], -v[5], -v[7]
+    v[4], v[5], v[7], v[8] = -v[4], -v[5], -v[7], -v[8]
 
 
-@njit("void(float64[::1], float64[::1])", cache=True, nogil=True)
-def _on_structure(v: Array, block: Array) -> None:
+@njit("void(float64[::1], float64[::1], float64[::1], float64[::1], float64, float64)", cache=True, nogil=True)
+def _on_structure(v: Array, law: Array, state: Array, block: Array, y: float, v_y: float) -> None:
     """A block's contact with the structure, whose body stands at the origin: v[0], v[1] is the point in the section."""
     block[0] -= v[4]
     block[1] -= v[5]
-    block[2] -= v[7]
-    block[3] += abs(v[6])
-    block[5] += abs(v[6]) * v[0]
-    block[6] += abs(v[6]) * v[1]
+    if v[6] == 0.0:
+        return
+    n_x, n_z, push = v[7] / v[6], v[8] / v[6], v[6]
+    slip = n_x * (state[4] + state[5] * v[2]) - n_z * (state[3] - state[5] * v[3])
+    p, n_y = tilt(v[0], n_x, law[2], law[1], y)
+    mu, more, _ = shares(law, p, n_y, slip, v_y)
+    block[2] += push * more * n_y
+    block[3] += mu * push * more
+    block[4] += mu * push * more / p
 
 
 @njit("void(float64[::1], float64[::1], float64[:, ::1])", cache=True, nogil=True)
@@ -186,34 +97,73 @@ def _on_sheet(v: Array, sheet: Array, nodes: Array) -> None:
     nodes[k + 1, 3] += (1.0 - w) * jz - jx * lever / span
 
 
-@njit("int64(int64, int64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], "
-      "float64[:, ::1])", cache=True, nogil=True)
-def accumulate(n: int, bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, sheet: Array,
-               sums: Array, nodes: Array) -> int:
-    """Add the impulses of one sub-step to the sums of the blocks and of the sheet's nodes.
+@njit("void(int64[::1], float64[::1], float64[::1], float64[::1], float64[:, ::1])", cache=True, nogil=True)
+def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: Array) -> None:
+    """Keep a pair whose normal impulse exceeds strength times contact length times width in a sub-step.
 
-    ``sums`` (blocks, 8) see SUM_COLUMNS; ``nodes`` (m, 4): x, z of the nodes and the impulse on them; ``sheet`` =
-    (x, z of the sheet body's origin, its v_x, v_z, work done by the sheet on blocks, impulse x, z on it, moment).
+    ``limit`` = (strength times sub-step [Pa s], least length [m], widths of the blocks...); row 0 of ``heavy`` counts.
+    """
+    jn, length = abs(first[6]), 0.0
+    if first[2] != last[2] or first[3] != last[3]:
+        jn += abs(last[6])
+        length = np.hypot(last[2] - first[2], last[3] - first[3])
+    width = limit[2 + pair[1]] if pair[0] < 0 else min(limit[2 + pair[0]], limit[2 + pair[1]])
+    if jn <= limit[0] * width * max(length, limit[1]):
+        return
+    k, count = 1, int(heavy[0, 0])
+    while k <= count and (heavy[k, 0] != pair[0] or heavy[k, 1] != pair[1]):
+        k += 1
+    if k >= heavy.shape[0]:
+        return
+    if k > count:
+        heavy[0, 0], heavy[k, :] = k, 0.0
+        heavy[k, 0], heavy[k, 1] = pair[0], pair[1]
+    both = length > 0.0
+    heavy[k, 2] += 1.0
+    heavy[k, 3] += jn
+    heavy[k, 4] += first[7] + (last[7] if both else 0.0)
+    heavy[k, 5] += first[8] + (last[8] if both else 0.0)
+    heavy[k, 6] += jn * length
+
+
+@njit("int64(int64, int64[:, ::1], float64[:, ::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], float64[::1], "
+      "float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])",
+      cache=True, nogil=True)
+def accumulate(n: int, bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, row: IntArray,
+               state: Array, law: Array, side: Array, limit: Array, sheet: Array, sums: Array, nodes: Array,
+               heavy: Array) -> int:
+    """Add the contacts of one sub-step; ``addresses`` (ascending) and ``slots`` tell blocks, structure and sheet apart.
+
+    ``sums`` (blocks, 7) see SUM_COLUMNS; ``nodes`` (m, 4): x, z of the nodes and the impulse on them; ``sheet`` =
+    (x, z of the sheet body's origin, its v_x, v_z, work done by the sheet on blocks, impulse x, z on it, moment);
+    ``side`` (2, blocks): y and v_y; ``law`` of the structure; ``heavy`` see HEAVY_COLUMNS and `_note_heavy`.
     Returns the number of contacts with bodies that are neither block, sheet nor structure (must be 0).
     """
     pair = np.empty((n, 2), np.int64)
     strange = 0
     for i in range(n):
-        pair[i, 0], pair[i, 1] = _slot(bodies[i, 0], addresses, slots), _slot(bodies[i, 1], addresses, slots)
-        strange += pair[i, 0] == _UNKNOWN or pair[i, 1] == _UNKNOWN
+        pair[i, 0] = slot_of(bodies[i, 0], addresses, slots)
+        pair[i, 1] = slot_of(bodies[i, 1], addresses, slots)
+        strange += pair[i, 0] == UNKNOWN or pair[i, 1] == UNKNOWN
         if pair[i, 0] > pair[i, 1]:  # smaller slot first: structure and sheet before blocks
             _swap(pair[i], values[i])
-    for i in _order(n, pair, values):
+    order = _order(n, pair, values)
+    for k in range(n):
+        i = order[k]
         a, b, v = pair[i, 0], pair[i, 1], values[i]
         if b < 0:
             continue
-        if a == STRUCTURE:
-            _on_structure(v, sums[b])
-        elif a == SHEET:
+        if a == STRUCTURE_SLOT:
+            _on_structure(v, law, state[row[b]], sums[b], side[0, b], side[1, b])
+        elif a == SHEET_SLOT:
             _on_sheet(v, sheet, nodes)
-            sums[b, 4] += abs(v[6])
-            sums[b, 7] += abs(v[6])
+            sums[b, 5] += abs(v[6])
+            sums[b, 6] += abs(v[6])
         else:
-            sums[a, 4] += abs(v[6])
-            sums[b, 4] += abs(v[6])
+            sums[a, 5] += abs(v[6])
+            sums[b, 5] += abs(v[6])
+        last = k + 1 == n or pair[order[k + 1], 0] != a or pair[order[k + 1], 1] != b
+        if last and limit[0] < np.inf:
+            twin = k > 0 and pair[order[k - 1], 0] == a and pair[order[k - 1], 1] == b
+            _note_heavy(pair[i], values[order[k - 1]] if twin else v, v, limit, heavy)
     return strange

@@ -13,6 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 POINT = "float64[::1]"
 POLYGON = "float64[:, ::1]"
@@ -91,20 +92,32 @@ def place(polygon: Array, x: float, z: float, angle: float, dx: float, dz: float
     return out
 
 
-@njit(f"float64[::1]({POLYGON}, {POLYGON})", cache=True, nogil=True)
-def nearest_angles(edges: Array, points: Array) -> Array:
-    """Angle [rad] of that one of (e, 4) edges (x0, z0, x1, z1) that is nearest to each of the points (n, >= 2)."""
-    angles = np.empty(points.shape[0])
+@njit(f"{POLYGON}({POLYGON}, {POLYGON})", cache=True, nogil=True)
+def nearest_edges(edges: Array, points: Array) -> Array:
+    """Angle [rad] and distance [m] (n, 2) of the edge (x0, z0, x1, z1) of (e, 4) nearest to each point (n, >= 2)."""
+    out = np.full((points.shape[0], 2), np.inf)
     for i in range(points.shape[0]):
-        best, x, z = np.inf, points[i, 0], points[i, 1]
+        x, z = points[i, 0], points[i, 1]
         for e in range(edges.shape[0]):
             ex, ez = edges[e, 2] - edges[e, 0], edges[e, 3] - edges[e, 1]
             s = ((x - edges[e, 0]) * ex + (z - edges[e, 1]) * ez) / (ex * ex + ez * ez)
             s = min(1.0, max(0.0, s))
             d = np.hypot(x - edges[e, 0] - s * ex, z - edges[e, 1] - s * ez)
-            if d < best:
-                best, angles[i] = d, np.arctan2(ez, ex)
-    return angles
+            if d < out[i, 1]:
+                out[i, 0], out[i, 1] = np.arctan2(ez, ex), d
+    return out
+
+
+@njit(f"{POLYGON}({POLYGON}, int64[::1], {POLYGON})", cache=True, nogil=True)
+def place_all(polygons: Array, offset: IntArray, state: Array) -> Array:
+    """Body-frame polygons (v, 2), block i from offset[i] to offset[i + 1], at the poses (n, >= 3) x, z, angle."""
+    out = np.empty_like(polygons)
+    for i in range(state.shape[0]):
+        c, s = np.cos(state[i, 2]), np.sin(state[i, 2])
+        for k in range(offset[i], offset[i + 1]):
+            out[k, 0] = state[i, 0] + c * polygons[k, 0] - s * polygons[k, 1]
+            out[k, 1] = state[i, 1] + s * polygons[k, 0] + c * polygons[k, 1]
+    return out
 
 
 def contiguous(polygon: object) -> Array:
@@ -142,26 +155,3 @@ def _holds(polygon: Array, point: Array) -> bool:
 def overlap_area(polygon: Array, solids: Sequence[Array]) -> float:
     """Area [m^2] that a convex polygon shares with convex polygons that do not overlap each other."""
     return float(sum(moments(intersection(polygon, solid))[0] for solid in solids))
-
-
-def cut_away(polygon: Array, solids: Sequence[Array], edges: Array) -> Array:
-    """What is left of a convex polygon outside a body made of convex polygons, as one convex polygon.
-
-    For every convex part that it overlaps, the polygon is cut along that outer edge of the body which leaves most.
-    Against one straight face this is exact; against a curved face it takes the ice between tangent and face as well.
-    """
-    out = polygon
-    for _ in solids:
-        if len(out) == 0 or overlap_area(out, solids) <= 1e-12 * moments(polygon)[0]:
-            break
-        out = max((_outside(out, edge) for edge in edges), key=lambda rest: _rank(rest, solids))
-    return out if overlap_area(out, solids) <= 1e-9 * moments(polygon)[0] else np.empty((0, 2))
-
-
-def _outside(polygon: Array, edge: Array) -> Array:
-    nx, nz = edge[3] - edge[1], edge[0] - edge[2]  # outward normal of a counter-clockwise edge
-    return clip(polygon, -nx, -nz, -(nx * edge[0] + nz * edge[1]))
-
-
-def _rank(rest: Array, solids: Sequence[Array]) -> float:
-    return moments(rest)[0] - 2 * overlap_area(rest, solids)

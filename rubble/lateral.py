@@ -1,34 +1,43 @@
 """Motion of blocks across the sections: they clear sideways around the structure.
 
-The structure presses a block along its normal, so the in-plane normal force F_x brings a side force F_y = F_x times
-`lateral_ratio`. Water drag and friction resist. A rough surface resists against the direction of slip; with the block
-also slipping at v_s in the plane, its share across is ``mu N v_y / hypot(v_y, v_s)``: full Coulomb friction for a block
-that only moves sideways, little for one that slides past anyway.
+The structure presses a block across with ``N n_y`` and resists with friction against the direction of slip, see
+`friction`; ice around it resists likewise with its own normal forces, and water drags on the side face.
 """
 
 from __future__ import annotations
 
-from math import hypot
+import numpy as np
+from numba import njit
 
 from rubble.block import Block
-from rubble.geometry import moments, place, submerged
-from rubble.physics import RubblePhysics
+from rubble.geometry import Array, IntArray, moments, place, submerged
 
 
-def side_step(block: Block, physics: RubblePhysics, force: float, friction: float, slip: float, dt: float) -> None:
-    """Move a block across by one window: ``force`` Fy on the block and friction limit mu N [N], slip v_s [m/s].
+@njit("float64[:, ::1](float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], "
+      "float64[:, ::1], float64[:, ::1])", cache=True, nogil=True)
+def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, offset: IntArray, mass: Array,
+               state: Array, sums: Array, side: Array) -> Array:
+    """Move the blocks of a section across by one window; returns the mean force on the structure (n, 3) [N].
 
-    Backward Euler for friction and drag, so neither turns the motion around.
+    ``sums`` as in `contacts`; ``side`` (2, n): y and v_y, changed here; ``mass`` with added mass; ``half_rho_cd`` =
+    rho_w C_d / 2. Backward Euler for friction and drag, so neither turns the motion around.
     """
-    if force == 0.0 and block.v_y == 0.0:
-        return
-    mass = float(block.body.mass)
-    v = block.v_y + dt * force / mass
-    speed = hypot(v, slip)
-    if speed > 0.0:
-        v *= max(0.0, 1.0 - dt * friction / (mass * speed))
-    block.v_y = 0.0 if v == 0.0 else v / (1.0 + dt * side_drag(block, physics) * abs(v) / mass)
-    block.y += dt * block.v_y
+    load = np.zeros((mass.shape[0], 3))
+    for i in range(mass.shape[0]):
+        load[i, 0], load[i, 1], load[i, 2] = sums[i, 0] / dt, -sums[i, 2] / dt, sums[i, 1] / dt
+        free = side[1, i] + sums[i, 2] / mass[i]
+        if free == 0.0:
+            continue
+        across = free * sums[i, 4] / sums[i, 3] if sums[i, 3] > 0.0 else free  # slip v_y / p on the structure
+        slip = np.hypot(state[i, 3], state[i, 4])
+        grip, rub = sums[i, 3] / np.hypot(across, slip), mu_ice * sums[i, 5] / np.hypot(free, slip)
+        v = free * max(0.0, 1.0 - (grip + rub) / mass[i])
+        if grip + rub > 0.0:
+            load[i, 1] += mass[i] * (free - v) / dt * grip / (grip + rub)
+        wet = moments(submerged(place(polygons[offset[i]:offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0)))
+        side[1, i] = v / (1.0 + dt * half_rho_cd * wet[0] * abs(v) / mass[i])
+        side[0, i] += dt * side[1, i]
+    return load
 
 
 def push(block: Block, neighbour: Block | None) -> None:
@@ -42,10 +51,3 @@ def push(block: Block, neighbour: Block | None) -> None:
     m, n = float(block.body.mass), float(neighbour.body.mass)
     if (block.y - neighbour.y) * (block.v_y - neighbour.v_y) < 0.0:  # they approach each other
         block.v_y = neighbour.v_y = (m * block.v_y + n * neighbour.v_y) / (m + n)
-
-
-def side_drag(block: Block, physics: RubblePhysics) -> float:
-    """rho_w/2 C_d times the submerged side face: drag over v_y |v_y| [kg/m]."""
-    (x, z), angle = block.body.position, block.body.angle
-    wet = submerged(place(block.polygon, x, z, angle, 0.0, 0.0))
-    return physics.rho_w / 2 * physics.form_drag * float(moments(wet)[0])

@@ -12,29 +12,24 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from math import floor, hypot, inf, isfinite, pi
+from math import floor, inf, isfinite, pi
 
 import numpy as np
 
+from rubble import table
 from rubble.block import ROTATING, SLIDING, Block, make_block
-from rubble.contacts import IntArray
-from rubble.geometry import Array, moments, place, submerged
-from rubble.lateral import push, side_step
-from rubble.physics import RubblePhysics
+from rubble.crushing import crush
+from rubble.geometry import Array, IntArray
+from rubble.lateral import push, side_steps
+from rubble.physics import RATE_DEPENDENT, RubblePhysics
 from rubble.section import Section
 
 Solids = Callable[[float], Sequence[Array]]  #: convex polygons of the structure in the plane y
-Ratio = Callable[[float, float, float], float]  #: Fy / Fx of the normal force at (y, x, z)
 
 
 def no_solids(y: float) -> Sequence[Array]:
     """Open water."""
     return ()
-
-
-def no_ratio(y: float, x: float, z: float) -> float:
-    """A structure without side force: a plane slope."""
-    return 0.0
 
 
 @dataclass(frozen=True)
@@ -51,43 +46,24 @@ class Domain:
         return self.x_min <= x <= self.x_max and abs(y) <= self.y_max and z >= -self.depth
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
-    """All blocks as arrays, in the order of their numbers; meanings and units as in `coupling.interface.BlockTable`."""
-
-    id: IntArray
-    fragment: IntArray
-    section: IntArray
-    phase: IntArray
-    mass: Array
-    width: Array
-    position: Array
-    angle: Array
-    velocity: Array
-    omega: Array
-    load: Array
-    outline: Array
-    offset: IntArray
-
-
 class RubbleLayer:
-    """Blocks in sections of width ``pitch``; ``solids(y)`` gives the structure, ``ratio`` its side force."""
+    """Blocks in sections of width ``pitch``; ``solids(y)`` gives the structure, ``revolved`` or plane."""
 
     def __init__(self, physics: RubblePhysics, pitch: float, *, origin: float = 0.0, solids: Solids = no_solids,
-                 ratio: Ratio = no_ratio, domain: Domain | None = None, threads: int = 1) -> None:
-        if not pitch > 0:
-            raise ValueError(f"section pitch is {pitch:g} m; it must be > 0")
+                 revolved: bool = False, domain: Domain | None = None, threads: int = 1) -> None:
+        if not (isfinite(pitch) and pitch > 0):
+            raise ValueError(f"section pitch is {pitch:g} m; a section needs a width > 0")
         self.physics, self.pitch, self.origin = physics, pitch, origin
-        self.solids, self.ratio, self.domain = solids, ratio, domain or Domain()
+        self.solids, self.revolved, self.domain = solids, revolved, domain or Domain()
         self.sections: dict[int, Section] = {}
         self.cleared: list[int] = []  #: numbers of the blocks that have left, in order
-        self.cleared_mass = 0.0  #: [kg]
+        self.cleared_mass, self.crushed_mass = 0.0, 0.0  #: [kg]
         self.cleared_momentum = np.zeros(3)  #: true mass times velocity at leaving [N s]
+        self.crushed_momentum = np.zeros(3)
         self.time = 0.0  #: [s]
-        self._loads: dict[int, tuple[float, float, float]] = {}
+        self.threads, self._pool = threads, ThreadPoolExecutor(threads) if threads > 1 else None
         self._window = 0.0
         self._next = 0
-        self._pool = ThreadPoolExecutor(threads) if threads > 1 else None
 
     # ---- sections ---------------------------------------------------------------------------------------------
 
@@ -95,7 +71,7 @@ class RubbleLayer:
         """The section with this number, made when first asked for."""
         if key not in self.sections:
             y = self.centre(key)
-            self.sections[key] = Section(self.physics, self.solids(y), y)
+            self.sections[key] = Section(self.physics, self.solids(y), y, self.revolved)
             self.sections = dict(sorted(self.sections.items()))
         return self.sections[key]
 
@@ -114,17 +90,34 @@ class RubbleLayer:
         return self.section(section).trim(polygon)
 
     def add_block(self, section: int, polygon_world: Array, strip_edges: Array, strip_widths: Array, density: float,
-                  velocity: Sequence[float], omega: float, y: float, fragment_id: int, angle: float = 0.0) -> int:
+                  velocity: Sequence[float], omega: float, y: float, fragment_id: int, angle: float = 0.0, *,
+                  flooded: bool | None = None, alone: bool = True) -> int:
         """Make a block from a convex outline (k, 2) in world x, z; returns its number.
 
         ``strip_edges`` (s + 1,) are places along the block's axis, which stands at ``angle`` [rad] from x: ``x cos +
-        z sin``; ``strip_widths`` (s,) its widths along y between them [m]. ValueError if it stands in the structure.
+        z sin``; ``strip_widths`` (s,) its widths along y between them [m]. ``velocity`` (x, z) or (x, y, z) [m/s].
+        ``flooded`` says whether its top is under water already, by default as `RubblePhysics.backfill` has it for a
+        new piece. ValueError if it stands in the structure or, unless ``alone`` is False, in another block.
         """
+        full = self.physics.backfill == "full" if flooded is None else flooded
         block = make_block(self._next, self.physics, polygon_world, strip_edges, strip_widths, density,
-                           (velocity[0], velocity[1]), omega, y, fragment_id, angle)
-        self.section(section).add(block)
+                           (velocity[0], velocity[-1]), omega, y, fragment_id, angle, float(full))
+        block.v_y = float(velocity[1]) if len(velocity) == 3 else 0.0
+        self.section(section).add(block, alone=alone)
         self._next += 1
         return block.id
+
+    def block(self, number: int) -> Block:
+        """The block with this number; KeyError if it has left."""
+        for block in self.blocks:
+            if block.id == number:
+                return block
+        raise KeyError(number)
+
+    @property
+    def blocks(self) -> list[Block]:
+        """All blocks in the order of their numbers."""
+        return sorted((b for s in self.sections.values() for b in s.blocks), key=lambda b: b.id)
 
     def set_sheet(self, section: int, x: Array, z: Array, front: float, velocity: Array, thickness: float,
                   stiffness: tuple[float, float], applied: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -153,47 +146,51 @@ class RubbleLayer:
         run = self._pool.map if self._pool else map
         list(run(lambda s: s.advance(n_substeps), self.sections.values()))
         self.time += self._window
-        self._loads = {}
         for section in self.sections.values():
             self._after_window(section)
         for key, section in list(self.sections.items()):
             places = section.state[:, :2].tolist()
             for block, (x, z) in zip(list(section.blocks), places, strict=True):
-                self._relocate(key, section, block, x, z)
+                if not self.domain.holds(x, block.y, z):
+                    self._clear(section, block)
+                elif (step := self.key_at(block.y) - key) != 0:
+                    self._cross(key, section, block, step)
 
     def _after_window(self, section: Section) -> None:
-        """Mean loads, phases and side steps of the blocks of one section."""
-        dt = self._window
+        """Mean loads, phases, side steps and crushing of the blocks of one section."""
+        if not section.blocks:
+            return
         if not np.isfinite(section.state).all():
             lost = section.blocks[int(np.argmin(np.isfinite(section.state).all(axis=1)))].id
             raise RuntimeError(f"block {lost} in the section at y = {section.y:g} m, t = {self.time:g} s: its motion "
                                "is not finite; shorten rubble.substep")
-        rows = zip(section.blocks, section.state.tolist(), section.sums.tolist(), section.slope_angles().tolist(),
-                   strict=True)
-        for block, state, sums, slope in rows:
-            ratio = self.ratio(block.y, sums[5] / sums[3], sums[6] / sums[3]) if sums[3] > 0 else 0.0
-            side = ratio * sums[2] / dt if isfinite(ratio) else 0.0
-            self._loads[block.id] = (sums[0] / dt, side, sums[1] / dt)
-            self._update_phase(block, block.long_axis + state[2] - slope, touches_sheet=sums[7] > 0)
-            grip = (self.physics.mu_structure * sums[3] + self.physics.mu_ice_ice * sums[4]) / dt
-            side_step(block, self.physics, -side, grip, hypot(state[3], state[4]), dt)
+        p, side = self.physics, section.side
+        mu = 0.1 if p.mu_ice_ice == RATE_DEPENDENT else float(p.mu_ice_ice)  # across: sliding, the upper end of speed
+        load = side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, section.polygons, section.corners,
+                          section.moved, section.state, section.sums, side)
+        for block, (y, v_y), (fx, fy, fz) in zip(section.blocks, side.T.tolist(), load.tolist(), strict=True):
+            block.y, block.v_y, block.load = y, v_y, (fx, fy, fz)
+        self._update_phases(section)
+        if section.heavy[0, 0] > 0:
+            mass, momentum = crush(section, self._window)
+            self.crushed_mass += mass
+            self.crushed_momentum += momentum
 
-    def _update_phase(self, block: Block, turn: float, *, touches_sheet: bool) -> None:
-        """Rotating until the long axis has once aligned with the nearest slope and has left the sheet; then sliding."""
-        if block.phase == SLIDING:
-            return
-        if not block.aligned:
-            period = pi if block.slender else pi / 2
-            block.aligned = bool(abs((turn + period / 2) % period - period / 2) <= self.physics.align_tolerance)
-        block.phase = SLIDING if block.aligned and not touches_sheet else ROTATING
+    def _update_phases(self, section: Section) -> None:
+        """Rotating until the long axis has once aligned with a slope near by and has left the sheet; then sliding."""
+        slopes = section.nearest_slopes()
+        touching = section.sums[:, 6] > 0
+        for i, block in enumerate(section.blocks):
+            if block.phase == SLIDING:
+                continue
+            if not block.aligned and slopes[i, 1] <= block.prism.reach + self.physics.thickness:
+                period = pi if block.prism.slender else pi / 2
+                turn = block.prism.long_axis + section.state[i, 2] - slopes[i, 0]
+                block.aligned = bool(abs((turn + period / 2) % period - period / 2) <= self.physics.align_tolerance)
+            block.phase = SLIDING if block.aligned and not touching[i] else ROTATING
 
-    def _relocate(self, key: int, section: Section, block: Block, x: float, z: float) -> None:
-        """Count a block as cleared, or hand it to the section that it has moved into if there is room."""
-        if not self.domain.holds(x, block.y, z):
-            self._clear(section, block)
-            return
-        if (step := self.key_at(block.y) - key) == 0:
-            return
+    def _cross(self, key: int, section: Section, block: Block, step: int) -> None:
+        """Hand a block to the section that it has moved into if there is room."""
         new = self.section(key + (1 if step > 0 else -1))
         room = 0.05 * self.physics.thickness  # overlap that the contact solver takes out without a push
         depth, neighbour = new.in_the_way(block)
@@ -212,14 +209,19 @@ class RubbleLayer:
 
     # ---- results ----------------------------------------------------------------------------------------------
 
-    def _rows(self) -> list[tuple[int, Block]]:
-        rows = [(key, block) for key, section in self.sections.items() for block in section.blocks]
-        return sorted(rows, key=lambda row: row[1].id)
+    def table(self) -> table.Table:
+        """All blocks as arrays, in the order of their numbers."""
+        return table.gather(self.sections)
 
     @property
     def load_on_structure(self) -> Array:
         """Mean force of each block on the structure over the last window (n, 3), in the order of the table [N]."""
-        return np.array([self._loads.get(b.id, _NOTHING) for _, b in self._rows()]).reshape(-1, 3)
+        return np.array([b.load for b in self.blocks]).reshape(-1, 3)
+
+    def load_by_phase(self, phases: Sequence[int]) -> Array:
+        """Sum of the mean forces of the blocks in each phase (len(phases), 3) [N]."""
+        phase: IntArray = np.array([b.phase for b in self.blocks], np.int64)
+        return np.array([self.load_on_structure[phase == p].sum(axis=0) for p in phases]).reshape(-1, 3)
 
     def sheet_forces(self, section: int) -> Array:
         """Mean force of the rubble on the sheet's nodes in a section over the last window (m, 2), x and z [N]."""
@@ -228,62 +230,19 @@ class RubbleLayer:
             return np.zeros((0 if found is None or found.sheet is None else len(found.sheet.nodes), 2))
         return found.sheet.nodes[:, 2:] / self._window
 
-    def table(self) -> Table:
-        """All blocks as arrays, in the order of their numbers."""
-        rows = self._rows()
-        bodies = [b.body for _, b in rows]
-        outlines = [place(b.polygon, b.body.position.x, b.body.position.y, b.body.angle, 0.0, 0.0) for _, b in rows]
-        return Table(
-            id=_ints(b.id for _, b in rows), fragment=_ints(b.fragment for _, b in rows),
-            section=_ints(key for key, _ in rows), phase=_ints(b.phase for _, b in rows),
-            mass=_floats(b.mass for _, b in rows), width=_floats(b.width for _, b in rows),
-            position=_floats((b.body.position.x, b.y, b.body.position.y) for _, b in rows).reshape(-1, 3),
-            angle=_floats(b.angle for b in bodies),
-            velocity=_floats((b.body.velocity.x, b.v_y, b.body.velocity.y) for _, b in rows).reshape(-1, 3),
-            omega=_floats(b.angular_velocity for b in bodies), load=self.load_on_structure,
-            outline=np.concatenate([*outlines, np.empty((0, 2))]),
-            offset=np.cumsum([0, *map(len, outlines)], dtype=np.int64))
-
     @property
     def mass(self) -> float:
         """True mass of all blocks that are followed [kg]."""
-        return float(sum(b.mass for _, b in self._rows()))
+        return float(sum(b.mass for b in self.blocks))
 
     @property
     def momentum(self) -> Array:
         """True mass times velocity of all blocks (3,) [N s]."""
-        rows = [b.mass * np.array([*b.body.velocity, b.v_y]) for _, b in self._rows()]
-        return np.sum(rows, axis=0)[[0, 2, 1]] if rows else np.zeros(3)
+        return table.momentum(self.blocks)
 
     @property
     def energy(self) -> dict[str, float]:
-        """Energy of the blocks [J]: kinetic (true mass, in the plane and across), added (of the water that moves with
-        them), potential (weight, and work against water pressure), and what drag in the plane has taken so far."""
-        kinetic = added = potential = 0.0
-        for _, b in self._rows():
-            v2, om2 = float(b.body.velocity.length_squared), float(b.body.angular_velocity) ** 2
-            kinetic += (b.mass * (v2 + b.v_y**2) + b.inertia * om2) / 2
-            added += ((b.body.mass - b.mass) * v2 + (b.body.moment - b.inertia) * om2) / 2
-            potential += b.mass * self.physics.g * b.body.position.y + self._water_energy(b)
-        drag = float(sum(s.losses[0] for s in self.sections.values()))
-        return {"kinetic": kinetic, "added": added, "potential": potential, "drag": drag}
-
-    def _water_energy(self, block: Block) -> float:
-        """rho_w g times the integral of depth over the submerged part [J]; strips count with their own width."""
-        (x, z), angle = block.body.position, block.body.angle
-        total = 0.0
-        for part, width in zip(block.parts, block.widths, strict=True):
-            area, _, depth, _ = moments(submerged(place(part, x, z, angle, 0.0, 0.0)))
-            total -= self.physics.rho_w * self.physics.g * width * area * depth
-        return total
-
-
-_NOTHING = (0.0, 0.0, 0.0)
-
-
-def _ints(values: object) -> IntArray:
-    return np.fromiter(values, dtype=np.int64)  # type: ignore[call-overload]
-
-
-def _floats(values: object) -> Array:
-    return np.array(list(values), dtype=np.float64)  # type: ignore[call-overload]
+        """See `table.energy`; with ``drag``, what drag in the plane has taken so far, and ``dry``, the work of dry
+        tops, by which the potential energy falls short."""
+        losses = sum((s.losses for s in self.sections.values()), np.zeros(4))
+        return {**table.energy(self.blocks, self.physics), "drag": float(losses[0]), "dry": float(losses[3])}

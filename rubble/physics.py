@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import isfinite
+from math import inf, isfinite
+from typing import Literal
+
+RATE_DEPENDENT = "rate-dependent"  #: friction after Lishman and Polojarvi (2015), see `friction.rate_dependent`
+Friction = float | Literal["rate-dependent"]
+Backfill = Literal["full", "none", "filling"]
 
 
 @dataclass(frozen=True)
 class RubblePhysics:
     """What the blocks are made of, what they meet, and how finely their motion is resolved.
 
-    Coefficients of friction belong to pairs; pymunk multiplies those of two shapes, so blocks and sheet carry
-    sqrt(mu_ice_ice) and the structure mu_structure / sqrt(mu_ice_ice).
+    Coefficients of friction belong to pairs of bodies and are set contact by contact in every sub-step.
     """
 
     rho_i: float = 900.0  #: density of ice [kg/m^3]
     rho_w: float = 1025.0  #: density of water [kg/m^3]
     g: float = 9.81  #: [m/s^2]
-    mu_ice_ice: float = 0.1  #: friction of block on block and block on sheet, > 0
-    mu_structure: float = 0.1  #: friction of block on structure
+    mu_ice_ice: Friction = 0.1  #: friction of block on block and block on sheet, or "rate-dependent"
+    mu_structure: Friction = 0.1  #: friction of block on structure, or "rate-dependent"
     restitution: float = 0.0  #: of every pair
     form_drag: float = 1.0  #: C_d on the projected submerged extent
     skin_drag: float = 4e-3  #: C_f on the wetted edges
@@ -30,20 +34,42 @@ class RubblePhysics:
     substep: float = 0.005  #: constant [s]
     align_tolerance: float = 0.0873  #: a block is aligned within this angle of the slope [rad]
     sheet_mass: float = 5e4  #: mass of the sheet's edge that moves with a contact [kg]
+    backfill: Backfill = "full"  #: whether the top of a new block floods: at once, never, or over `filling_time`
+    filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
+    backfill_level: float = 0.0  #: height of the water on the tops, <= 0 [m]
+    contact_strength: float = inf  #: pressure at which a contact crushes [Pa]
 
     def __post_init__(self) -> None:
         for f in fields(self):
             value = getattr(self, f.name)
-            if not isfinite(value) or value < 0:
+            if isinstance(value, str):
+                self._check_word(f.name, value)
+            elif f.name == "backfill_level":
+                if not (isfinite(value) and value <= 0):
+                    raise ValueError(f"rubble.backfill_level is {value}; water on a block stands at z <= 0")
+            elif not value >= 0 or (not isfinite(value) and f.name != "contact_strength"):
                 raise ValueError(f"rubble.{f.name} is {value}; it must be a number >= 0")
-        for name in ("rho_i", "rho_w", "mu_ice_ice", "thickness", "slop_ratio", "iterations", "substep", "sheet_mass"):
+        for name in _POSITIVE:
             if getattr(self, name) == 0:
-                raise ValueError(f"rubble.{name} is 0; it must be > 0" + _HINT.get(name, ""))
+                raise ValueError(f"rubble.{name} is 0; it must be > 0")
+
+    @staticmethod
+    def _check_word(name: str, value: str) -> None:
+        words = {"mu_ice_ice": (RATE_DEPENDENT,), "mu_structure": (RATE_DEPENDENT,),
+                 "backfill": ("full", "none", "filling")}.get(name, ())
+        if value not in words:
+            raise ValueError(f"rubble.{name} is '{value}'; choose " + (" or ".join(words) or "a number"))
 
     @property
     def slop(self) -> float:
         """Overlap that the impulse solver leaves alone [m]."""
         return self.slop_ratio * self.thickness
 
+    @property
+    def filling_rate(self) -> float:
+        """Share of the head on a wet top that comes per second [1/s]; 0: it stays dry."""
+        return 1.0 / self.filling_time if self.backfill == "filling" else 0.0
 
-_HINT = {"mu_ice_ice": " because pair coefficients are products; for smooth ice give 1e-6"}
+
+_POSITIVE = ("rho_i", "rho_w", "thickness", "slop_ratio", "iterations", "substep", "sheet_mass", "filling_time",
+             "contact_strength")

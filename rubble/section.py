@@ -1,49 +1,38 @@
-"""One vertical section parallel to the drift: a pymunk space in (x, z) with blocks, structure and sheet.
-
-Settings that change loads: collision persistence 1 (reported impulses = momentum balance), slop a small share of the
-thickness, a constant sub-step, the first 16 shape ids unused (contacts of a pair among the first shapes would share a
-hash and lose their history), no gravity: weight and water act as forces, so that added mass can stand in the mass.
-"""
+"""One vertical section parallel to the drift: a pymunk space in (x, z) with blocks, structure and sheet."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pymunk
 from pymunk import batch
-from pymunk._chipmunk_cffi import ffi
 
+from rubble.arbiters import ContactReader
 from rubble.block import Block
-from rubble.contacts import SHEET, STRUCTURE, SUM_COLUMNS, ContactReader, IntArray, accumulate
-from rubble.geometry import Array, contiguous, cut_away, exposed_edges, nearest_angles, overlap_area, place
+from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS, accumulate
+from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction
+from rubble.geometry import Array, contiguous, exposed_edges, nearest_edges, overlap_area
 from rubble.physics import RubblePhysics
+from rubble.pointers import IntArray, address
 from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
+from rubble.space import new_space
 from rubble.stepping import Calls, run
+from rubble.trim import cut_away
 from rubble.water import EDGE_COLUMNS, STATE_COLUMNS
 
 _F = batch.BodyFields
 _GET = _F.BODY_ID | _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY
 _SET = _F.FORCE | _F.TORQUE
-
-
-def new_space(physics: RubblePhysics) -> pymunk.Space:
-    """A space with the settings of a load simulation."""
-    space = pymunk.Space()
-    space.collision_persistence = 1
-    space.collision_slop = physics.slop
-    space.iterations = int(physics.iterations)
-    unused = [pymunk.Circle(space.static_body, 1.0) for _ in range(16)]
-    space.add(*unused)
-    space.remove(*unused)
-    return space
+HEAVY = 64  #: overloaded pairs kept in a window
 
 
 class Section:
     """Blocks, structure and sheet in the plane y; blocks are kept in the order of their numbers."""
 
-    def __init__(self, physics: RubblePhysics, solids: Sequence[Array], y: float) -> None:
-        self.physics, self.y = physics, y
+    def __init__(self, physics: RubblePhysics, solids: Sequence[Array], y: float, revolved: bool = False) -> None:
+        self.physics, self.y, self.revolved = physics, y, revolved
         self.space = new_space(physics)
         self.solids = [contiguous(s) for s in solids]
         self.faces = exposed_edges(self.solids)  #: (e, 4) outer edges of the structure
@@ -51,47 +40,59 @@ class Section:
         self.slopes = np.ascontiguousarray(self.faces[rise < -0.1 * np.hypot(run, rise)])  #: those that meet the drift
         self.blocks: list[Block] = []
         self.sheet: SheetBody | None = None
-        self.losses = np.zeros(3)  #: energy lost to drag [J]; impulse of weight and water in x and z [N s]
+        #: energy lost to drag [J]; impulse of dead load and water in x and z [N s]; work of dry tops [J]
+        self.losses = np.zeros(4)
         self.sheet_sums = np.zeros(8)  #: see `contacts.accumulate`
-        self.sums = np.zeros((0, SUM_COLUMNS))
-        self.state = np.zeros((0, STATE_COLUMNS))  #: of the blocks, in their order
-        self._reader, self._buffer, self._out = ContactReader(), batch.Buffer(), batch.Buffer()
+        self.heavy = np.zeros((HEAVY + 1, HEAVY_COLUMNS))
         self._water = np.array([physics.rho_w * physics.g, physics.rho_w / 2, physics.form_drag, physics.skin_drag,
-                                physics.substep])
-        self._add_structure()
-        self._changed()
-
-    def _add_structure(self) -> None:
+                                physics.substep, physics.backfill_level, physics.filling_rate])
         for solid in self.solids:
-            shape = pymunk.Poly(self.space.static_body, [(float(x), float(z)) for x, z in solid])
-            shape.friction = self.physics.mu_structure / self.physics.mu_ice_ice**0.5
-            shape.elasticity = self.physics.restitution**0.5
-            shape.filter = pymunk.ShapeFilter(categories=STRUCTURE_CATEGORY)
-            self.space.add(shape)
+            self._add_solid(solid)
+        self._connect()
+
+    def _connect(self) -> None:
+        """What holds addresses: made anew after a snapshot has been loaded."""
+        self._reader, self._buffer, self._out = ContactReader(), batch.Buffer(), batch.Buffer()
+        self._friction = PairFriction(self.space, self.physics, self.revolved, self.y)
+        self.changed()
+
+    def __getstate__(self) -> dict[str, Any]:
+        own = {k: v for k, v in self.__dict__.items() if k not in _ADDRESSES}
+        return {**own, "sums": self.sums.copy()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._connect()
+        self.sums[:] = state["sums"]
+
+    def _add_solid(self, solid: Array) -> None:
+        shape = pymunk.Poly(self.space.static_body, [(float(x), float(z)) for x, z in solid])
+        shape.elasticity, shape.collision_type = self.physics.restitution**0.5, STRUCTURE
+        shape.filter = pymunk.ShapeFilter(categories=STRUCTURE_CATEGORY)
+        self.space.add(shape)
+
+    # ---- blocks and sheet -------------------------------------------------------------------------------------
 
     def trim(self, polygon: Array) -> Array:
         """What is left of a convex outline outside the structure, convex; (0, 2) if nothing is."""
         return cut_away(contiguous(polygon), self.solids, self.faces)
 
-    def add(self, block: Block) -> None:
-        """Take in a block; ValueError if it stands inside the structure."""
-        inside = self.overlap_with_structure(block)
-        if inside > 2 * self.physics.slop * np.sqrt(block.area):
-            x, z = block.body.position
-            raise ValueError(f"block {block.id} at x = {x:.3f}, z = {z:.3f} m overlaps the structure by {inside:.3g} "
-                             "m2; trim its outline first")
+    def add(self, block: Block, *, alone: bool = True) -> None:
+        """Take in a block; ValueError if it stands inside the structure or, if ``alone``, inside another block."""
+        inside, room = overlap_area(block.outline, self.solids), 2 * self.physics.slop * np.sqrt(block.prism.area)
+        where = f"block {block.id} at x = {block.body.position.x:.3f}, z = {block.body.position.y:.3f} m"
+        if inside > room:
+            raise ValueError(f"{where} overlaps the structure by {inside:.3g} m2; trim its outline first")
+        for other in self.blocks if alone else []:
+            if (shared := overlap_area(block.outline, [other.outline])) > room:
+                raise ValueError(f"{where} overlaps block {other.id} by {shared:.3g} m2; move one of them")
         self.adopt(block)
 
     def adopt(self, block: Block) -> None:
         """Take in a block that comes from another section, as it is."""
         self.space.add(block.body, block.shape)
         self.blocks = sorted([*self.blocks, block], key=lambda b: b.id)
-        self._changed()
-
-    def overlap_with_structure(self, block: Block) -> float:
-        """Area that a block shares with the structure [m^2]."""
-        (x, z), angle = block.body.position, block.body.angle
-        return overlap_area(place(block.polygon, x, z, angle, 0.0, 0.0), self.solids)
+        self.changed()
 
     def in_the_way(self, block: Block) -> tuple[float, Block | None]:
         """What stands where a block of another section would be: how deep it would be in it [m], and the block it is.
@@ -108,14 +109,14 @@ class Section:
         """Take a block out of the section."""
         self.space.remove(block.shape, block.body)
         self.blocks = [b for b in self.blocks if b is not block]
-        self._changed()
+        self.changed()
 
     def set_sheet(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
                   stiffness: tuple[float, float], applied: tuple[float, float] = (0.0, 0.0)) -> None:
         """Where the sheet is at the start of a window; see `SheetBody.follow`."""
         if self.sheet is None:
             self.sheet = SheetBody(self.space, self.physics, x, z, velocity)
-            self._changed()
+            self.changed()
         self.sheet.follow(x, z, front, velocity, thickness, stiffness, applied)
 
     def remove_sheet(self) -> None:
@@ -123,28 +124,36 @@ class Section:
         if self.sheet is not None:
             self.sheet.remove()
             self.sheet = None
-            self._changed()
+            self.changed()
 
-    def _changed(self) -> None:
-        """Lay out the tables of the kernels anew after bodies have come or gone."""
-        edges = [b.edges for b in self.blocks]
+    # ---- tables of the kernels --------------------------------------------------------------------------------
+
+    def changed(self) -> None:
+        """Lay out the tables of the kernels anew after bodies have come, gone or changed."""
+        blocks, g = self.blocks, self.physics.g
+        edges = [b.prism.edges for b in blocks]
         self._edges = np.ascontiguousarray(np.concatenate(edges) if edges else np.zeros((0, EDGE_COLUMNS)))
         self._offset = np.cumsum([0, *(len(e) for e in edges)], dtype=np.int64)
-        self._weight = np.array([b.mass * self.physics.g for b in self.blocks])
-        self._ids = [b.body.id for b in self.blocks]
-        bodies = [_address(self.space.static_body), *(_address(b.body) for b in self.blocks)]
-        slots = [STRUCTURE, *range(len(self.blocks))]
+        self._ids = [b.body.id for b in blocks]
+        dead = [(b.thrust[0], b.thrust[1] - b.mass * g, b.thrust[2]) for b in blocks]
+        self._dead = np.array(dead, dtype=np.float64).reshape(-1, 3)
+        limit = self.physics.contact_strength * self.physics.substep, self.physics.slop
+        self._limit = np.array([*limit, *(b.prism.width for b in blocks)])
+        bodies = [address(self.space.static_body._body), *(address(b.body._body) for b in blocks)]
+        slots = [STRUCTURE_SLOT, *range(len(blocks))]
         if self.sheet is not None:
-            bodies, slots = [*bodies, _address(self.sheet.body)], [*slots, SHEET]
+            bodies, slots = [*bodies, address(self.sheet.body._body)], [*slots, SHEET_SLOT]
         order = np.argsort(bodies)
         self._addresses, self._slots = np.array(bodies, np.int64)[order], np.array(slots, np.int64)[order]
         self._order_seen = np.zeros(0, np.uintp)
-        self.sums = np.zeros((len(self.blocks), SUM_COLUMNS))
-        self.state = self._pose_table()
-
-    def _pose_table(self) -> Array:
-        rows = [(*b.body.position, b.body.angle, *b.body.velocity, b.body.angular_velocity) for b in self.blocks]
-        return np.array(rows, dtype=np.float64).reshape(-1, STATE_COLUMNS)
+        outlines = [b.prism.polygon for b in blocks]
+        self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
+        self.corners = np.cumsum([0, *map(len, outlines)], dtype=np.int64)
+        self.moved = np.array([b.body.mass for b in blocks], np.float64)  #: mass with added mass [kg]
+        self.side = np.zeros((2, len(blocks)))  #: y and v_y
+        self.sums = np.zeros((len(blocks), SUM_COLUMNS))
+        rows = [(*b.body.position, b.body.angle, *b.body.velocity, b.body.angular_velocity) for b in blocks]
+        self.state = np.array(rows, dtype=np.float64).reshape(-1, STATE_COLUMNS)  #: of the blocks, in their order
 
     def _read_state(self) -> Array:
         """State rows of all bodies in pymunk's own order; the map from blocks to rows follows that order."""
@@ -161,44 +170,51 @@ class Section:
             self._calls = Calls(self.space, self._buffer, _GET, self._out, _SET)
         return np.frombuffer(self._buffer.float_buf(), np.float64).reshape(-1, STATE_COLUMNS)
 
+    # ---- motion -----------------------------------------------------------------------------------------------
+
     def advance(self, n_substeps: int) -> None:
         """Move on by whole sub-steps; sums of impulses start from zero."""
-        self.sums[:] = 0.0
-        self.sheet_sums[:] = 0.0
+        self.sums[:] = self.sheet_sums[:] = 0.0
+        self.heavy[0, 0] = 0.0
         if self.sheet is not None:
             self.sheet.nodes[:, 2:] = 0.0
         if not self.blocks and self.sheet is None:
             return
+        self.side = np.array([[b.y for b in self.blocks], [b.v_y for b in self.blocks]])
+        self._flooded = np.array([b.flooded for b in self.blocks])
         done = 0
         while done < n_substeps:
             done += self._run(n_substeps - done)
         self.state = self._read_state()[self._row]
+        for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
+            block.flooded = share
 
     def _run(self, n: int) -> int:
         """Up to ``n`` sub-steps in one compiled call; fewer if the table of contacts had to grow. Returns how many."""
         state, reader, sheet = self._read_state(), self._reader, self.sheet
         spring, driver, nodes = (sheet.spring, sheet.driver, sheet.nodes) if sheet else (_NO, _NO, _NO_NODES)
+        self._friction.watch(self._addresses, self._slots, self._row, state, self._sheet_row, self.side[0],
+                             self.side[1])
         self.space._bodies_to_check.clear()  # masses are positive by construction
+        last = (self._addresses, self._slots, self._row, state, self._friction.structure, self.side, self._limit,
+                self.sheet_sums, self.sums, nodes, self.heavy)
         done = run(n, self.physics.substep, self._calls.table, reader.header, state, self._force, self._row,
-                   self._edges, self._offset, self._weight, self._water, self.losses, self._sheet_row, spring, driver,
-                   reader.bodies, reader.values, self._addresses, self._slots, self.sheet_sums, self.sums, nodes)
+                   self._edges, self._offset, self._dead, self._water, self._flooded, self.losses, self._sheet_row,
+                   spring, driver, reader.bodies, reader.values, *last[:2], *last[4:])
         strange = done < 0
         if 0 <= done < n:  # the contacts of this sub-step did not fit: enlarge, read and add them
             count = reader.read(self.space)
-            strange = accumulate(count, reader.bodies, reader.values, self._addresses, self._slots, self.sheet_sums,
-                                 self.sums, nodes) > 0
+            strange = accumulate(count, reader.bodies, reader.values, *last) > 0
             done += 1
         if strange:
             raise RuntimeError(f"section at y = {self.y:g} m: contact with a body that is no block, sheet or structure")
         return done
 
-    def slope_angles(self) -> Array:
-        """Angle of the face that meets the drift and is nearest to each block (n,), from the x axis [rad]; or nan."""
-        return nearest_angles(self.slopes, self.state) if len(self.slopes) else np.full(len(self.blocks), np.nan)
+    def nearest_slopes(self) -> Array:
+        """Angle [rad] and distance [m] of the face that meets the drift and is nearest to each block (n, 2); or nan."""
+        return nearest_edges(self.slopes, self.state) if len(self.slopes) else np.full((len(self.blocks), 2), np.nan)
 
 
 _NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
-
-
-def _address(body: pymunk.Body) -> int:
-    return int(ffi.cast("intptr_t", body._body))
+_ADDRESSES = {"_reader", "_buffer", "_out", "_friction", "_calls", "_row", "_force", "_addresses", "_slots",
+              "_order_seen", "_ids"}

@@ -23,7 +23,8 @@ import numpy as np
 import pymunk
 from numba import njit
 
-from rubble.geometry import Array, contiguous
+from rubble.friction import SHEET
+from rubble.geometry import Array
 from rubble.physics import RubblePhysics
 
 ICE_SHEET, STRUCTURE_CATEGORY = 0b10, 0b100  #: collision categories; the lattice does the contact between these two
@@ -50,20 +51,29 @@ class SheetBody:
         self.space, self.physics = space, physics
         self.body = pymunk.Body(1.0, float("inf"))
         self.body.position = float(x[0]), float(z[0])
-        self.body.velocity = tuple(velocity.mean(axis=0).tolist())
+        self.body.velocity = tuple(velocity[0].tolist())
         self.driver = np.array([x[0], z[0], 0.0, 0.0])
         self.spring = np.zeros(6)
         self.nodes = np.zeros((len(x), 4))
         self.shapes: list[pymunk.Poly] = []
+        self._corners = np.zeros((0, 4, 2))
         space.add(self.body)
 
     def follow(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
                stiffness: tuple[float, float], applied: tuple[float, float]) -> None:
-        """Take over the lattice's position for a window. The driver jumps to it, the body follows on its spring."""
-        self.driver[:] = x[0], z[0], *velocity.mean(axis=0)
+        """Take over the lattice's position for a window. The driver jumps to it, the body follows on its spring.
+
+        Between two hand-overs the body moves with those nodes that met rubble in the last window, weighted with the
+        force; without contact, with the foremost one.
+        """
+        force = np.abs(self.nodes[:, 2:]).sum(axis=1)
+        total = float(force.sum())
+        v = force @ velocity / total if len(force) == len(x) and total > 0.0 else velocity[0]
+        self.driver[:] = x[0], z[0], v[0], v[1]
         self._set_spring(np.array(stiffness, dtype=np.float64), applied)
         self.nodes = np.column_stack([x, z, np.zeros((len(x), 2))])
-        self._set_shapes(sheet_polygons(x, z, front, thickness, self.physics.slop / 2))
+        corners = sheet_polygons(x, z, front, thickness, self.physics.slop / 2)
+        self._set_shapes(corners - self.driver[:2])
 
     def _set_spring(self, k: Array, applied: tuple[float, float]) -> None:
         if not (np.isfinite(k).all() and (k > 0).all()):
@@ -74,19 +84,23 @@ class SheetBody:
         self.spring[:2], self.spring[2:4] = k, 2 * np.sqrt(k) * (root - dt * np.sqrt(k))
         self.spring[4:] = applied
 
-    def _set_shapes(self, polygons: list[Array]) -> None:
-        """New corners for the old shapes if their number is the same: contacts keep their history."""
-        local = [[(float(a - self.driver[0]), float(b - self.driver[1])) for a, b in p] for p in polygons]
-        if len(local) == len(self.shapes):
-            for shape, corners in zip(self.shapes, local, strict=True):
+    def _set_shapes(self, local: Array) -> None:
+        """New corners (polygons, 4, 2) for the old shapes if their number is the same: contacts keep their history."""
+        if local.shape == self._corners.shape:
+            if np.abs(local - self._corners).max() < 1e-9:
+                return  # it has only drifted
+            for shape, corners in zip(self.shapes, local.tolist(), strict=True):
                 shape.unsafe_set_vertices(corners)
             self.space.reindex_shapes_for_body(self.body)
-            return
+        else:
+            self._replace_shapes(local)
+        self._corners = local
+
+    def _replace_shapes(self, local: Array) -> None:
         self.space.remove(*self.shapes)
-        self.shapes = [pymunk.Poly(self.body, corners) for corners in local]
+        self.shapes = [pymunk.Poly(self.body, corners) for corners in local.tolist()]
         for shape in self.shapes:
-            shape.friction = self.physics.mu_ice_ice**0.5
-            shape.elasticity = self.physics.restitution**0.5
+            shape.elasticity, shape.collision_type = self.physics.restitution**0.5, SHEET
             shape.filter = pymunk.ShapeFilter(categories=ICE_SHEET,
                                               mask=pymunk.ShapeFilter.ALL_MASKS() ^ STRUCTURE_CATEGORY)
         self.space.add(*self.shapes)
@@ -96,37 +110,37 @@ class SheetBody:
         self.space.remove(*self.shapes, self.body)
 
 
-def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance: float) -> list[Array]:
-    """Convex polygons of the sheet: its nodes joined by straight pieces, as long as they stay within ``tolerance``.
+def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance: float) -> Array:
+    """Corners (p, 4, 2) of the sheet: its nodes joined by straight pieces, as long as they stay within ``tolerance``.
 
     Few long pieces, because a block that slides along the underside catches on the joints. Ahead of the first node
     the sheet goes on straight to ``front``.
     """
-    line = _middle_line(x, z, front)
-    polygons, start = [], 0
-    while start < len(line) - 1:
-        end = start + 1
-        while end + 1 < len(line) and _straight(line[start:end + 2], tolerance):
-            end += 1
-        a, b = line[start], line[end]
-        half = np.array([0.0, thickness / 2])
-        polygons.append(contiguous([b - half, a - half, a + half, b + half]))
-        start = end
-    return polygons
+    points = np.column_stack([x, z])
+    if len(x) == 1:  # half a cell on both sides
+        points = np.array([points[0], points[0] - [max(front - x[0], 1e-3), 0.0]])
+    if front - x[0] > 1e-9:
+        slope = (points[0, 1] - points[1, 1]) / (points[0, 0] - points[1, 0])
+        points[0] = front, points[0, 1] + slope * (front - x[0])
+    return _pieces(points, thickness / 2, tolerance)
 
 
-def _middle_line(x: Array, z: Array, front: float) -> Array:
-    """Points of the mid-plane from the front backwards; a single node has half a cell on both sides."""
-    points = [(float(a), float(b)) for a, b in zip(x, z, strict=True)]
-    slope = (points[0][1] - points[1][1]) / (points[0][0] - points[1][0]) if len(points) > 1 else 0.0
-    ahead = front - points[0][0]
-    if len(points) == 1:
-        points.append((points[0][0] - max(ahead, 1e-3), points[0][1]))
-    if ahead > 1e-9:
-        points[0] = (front, points[0][1] + slope * ahead)
-    return np.array(points)
-
-
-def _straight(line: Array, tolerance: float) -> bool:
-    s = (line[:, 0] - line[0, 0]) / (line[-1, 0] - line[0, 0])
-    return bool(np.abs(line[:, 1] - line[0, 1] - s * (line[-1, 1] - line[0, 1])).max() <= tolerance)
+@njit("float64[:, :, ::1](float64[:, ::1], float64, float64)", cache=True, nogil=True)
+def _pieces(line: Array, half: float, tolerance: float) -> Array:
+    """The straight pieces of a line (n, 2) with x decreasing, as counter-clockwise quadrangles of thickness 2 half."""
+    out = np.empty((line.shape[0] - 1, 4, 2))
+    count = start = 0
+    while start < line.shape[0] - 1:
+        end, fits = start + 1, True
+        while fits and end + 1 < line.shape[0]:
+            slope = (line[end + 1, 1] - line[start, 1]) / (line[end + 1, 0] - line[start, 0])
+            for k in range(start + 1, end + 1):
+                off = line[k, 1] - line[start, 1] - slope * (line[k, 0] - line[start, 0])
+                fits = fits and abs(off) <= tolerance
+            if fits:
+                end += 1
+        for c in range(4):
+            at, side = (end if c in (0, 3) else start), (-half if c < 2 else half)
+            out[count, c, 0], out[count, c, 1] = line[at, 0], line[at, 1] + side
+        count, start = count + 1, end
+    return out[:count].copy()

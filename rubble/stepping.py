@@ -10,45 +10,18 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import carray, njit, types
-from numba.core import cgutils
-from numba.extending import intrinsic
+from numba import carray, njit
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from rubble.contacts import IntArray, _pointer, accumulate
+from rubble.arbiters import HEADER
+from rubble.contacts import accumulate
 from rubble.geometry import Array
+from rubble.pointers import IntArray, address, for_each, pointer, step_space
 from rubble.sheet import spring_force
 from rubble.water import apply_water
 
-
-def _call_step(typingctx: Any, function: Any, space: Any, dt: Any) -> Any:
-    """function(space, dt) at an address, as cpSpaceStep."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        kind = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t, ir.DoubleType()])
-        target = builder.inttoptr(args[0], kind.as_pointer())
-        builder.call(target, [builder.inttoptr(args[1], cgutils.voidptr_t), args[2]])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.float64), codegen
-
-
-def _call_each(typingctx: Any, function: Any, space: Any, callback: Any, data: Any) -> Any:
-    """function(space, callback, data) at an address, as cpSpaceEachBody."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        kind = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t] * 3)
-        target = builder.inttoptr(args[0], kind.as_pointer())
-        builder.call(target, [builder.inttoptr(a, cgutils.voidptr_t) for a in args[1:]])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.int64, types.int64), codegen
-
-
-step_space: Any = intrinsic(_call_step)
-for_each: Any = intrinsic(_call_each)
+_CALLBACK, _DATA = HEADER, HEADER + 1
 
 
 class Calls:
@@ -60,8 +33,10 @@ class Calls:
         functions = [ffi.addressof(lib, n) for n in (
             "cpSpaceStep", "cpSpaceEachBody", "cpSpaceEachCachedArbiter", "pmSpaceBodyGetIteratorFuncBatched",
             "pmSpaceBodySetIteratorFuncBatched")]
-        numbers = [_at(get._float_arr) + float_num, _at(get._int_arr) + int_num, _at(put._float_arr) + float_num]
-        self.table = np.array([*map(_at, functions), _at(space._space), *map(_at, self._kept), *numbers], np.int64)
+        numbers = [address(get._float_arr) + float_num, address(get._int_arr) + int_num,
+                   address(put._float_arr) + float_num]
+        kept = map(address, self._kept)
+        self.table = np.array([*map(address, functions), address(space._space), *kept, *numbers], np.int64)
 
     @staticmethod
     def _struct(buffer: batch.Buffer, fields: Any) -> Any:
@@ -70,27 +45,23 @@ class Calls:
         return data
 
 
-def _at(pointer: Any) -> int:
-    return int(ffi.cast("intptr_t", pointer))
-
-
 @njit("int64(int64, float64, int64[::1], int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], float64[:, ::1], "
-      "int64[::1], float64[::1], float64[::1], float64[::1], int64, float64[::1], float64[::1], int64[:, ::1], "
-      "float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], float64[:, ::1])", cache=True,
-      nogil=True)
+      "int64[::1], float64[:, ::1], float64[::1], float64[::1], float64[::1], int64, float64[::1], float64[::1], "
+      "int64[:, ::1], float64[:, ::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], float64[::1], "
+      "float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])", cache=True, nogil=True)
 def run(n: int, dt: float, calls: IntArray, header: IntArray, state: Array, force: Array, row: IntArray, edges: Array,
-        offset: IntArray, weight: Array, water: Array, losses: Array, sheet_row: int, spring: Array, driver: Array,
-        bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, sheet: Array, sums: Array,
-        nodes: Array) -> int:
+        offset: IntArray, dead: Array, water: Array, flooded: Array, losses: Array, sheet_row: int, spring: Array,
+        driver: Array, bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, law: Array, side: Array,
+        limit: Array, sheet: Array, sums: Array, nodes: Array, heavy: Array) -> int:
     """Do ``n`` sub-steps; returns how many contacts were summed (n), or the sub-step whose contacts did not fit.
 
     ``state`` is the memory that the batch interface fills: valid before the call and after every step. -1 - k means
     that sub-step k met a body that is no block, sheet or structure.
     """
-    get_floats, get_ints = carray(_pointer(calls[8]), 1, np.int32), carray(_pointer(calls[9]), 1, np.int32)
-    put_floats = carray(_pointer(calls[10]), 1, np.int32)
+    get_floats, get_ints = carray(pointer(calls[8]), 1, np.int32), carray(pointer(calls[9]), 1, np.int32)
+    put_floats = carray(pointer(calls[10]), 1, np.int32)
     for k in range(n):
-        apply_water(edges, offset, weight, water, row, state, force, losses)
+        apply_water(edges, offset, dead, water, flooded, row, state, force, losses)
         if sheet_row >= 0:
             spring_force(spring, dt, driver, state[sheet_row], force[sheet_row])
         put_floats[0] = 0
@@ -102,9 +73,10 @@ def run(n: int, dt: float, calls: IntArray, header: IntArray, state: Array, forc
             sheet[0], sheet[1] = state[sheet_row, 0], state[sheet_row, 1]
             sheet[2], sheet[3] = state[sheet_row, 3], state[sheet_row, 4]
         header[0] = 0
-        for_each(calls[2], calls[5], header[15], header[16])
+        for_each(calls[2], calls[5], header[_CALLBACK], header[_DATA])
         if header[0] > header[1]:
             return k
-        if header[0] > 0 and accumulate(header[0], bodies, values, addresses, slots, sheet, sums, nodes) > 0:
+        if header[0] > 0 and accumulate(header[0], bodies, values, addresses, slots, row, state, law, side, limit,
+                                        sheet, sums, nodes, heavy) > 0:
             return -1 - k
     return n

@@ -194,9 +194,9 @@ def impulse_balance(sign):
     section, error, change, pressed = layer.section(0), 0.0, 0.0, 0.0
     for w in range(40):
         flat_sheet(layer, x=np.array([0.0, -3.0, -6.0, -9.0]) + 0.02 * w, velocity=(0.4, 0.0), stiffness=(1e9, 3e7))
-        water, p = section.losses[1:].copy(), moving(section)
+        water, p = section.losses[1:3].copy(), moving(section)
         layer.advance(10)
-        got = section.losses[1:] - water - sign * section.sums[:, :2].sum(axis=0) - section.sheet_sums[5:7]
+        got = section.losses[1:3] - water - sign * section.sums[:, :2].sum(axis=0) - section.sheet_sums[5:7]
         error = max(error, np.abs(moving(section) - p - got).max())
         change = max(change, np.abs(section.sums[:, 0]).max())
         pressed = max(pressed, np.abs(section.sheet_sums[5:7]).max())

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from rubble.geometry import clip, contiguous, cut_away, exposed_edges, intersection, moments, place, submerged
+from rubble.geometry import clip, contiguous, exposed_edges, intersection, moments, place, submerged
 from rubble.outline import convex_parts
+from rubble.trim import cut_away
 
 BOX = contiguous([(0, 0), (4, 0), (4, 2), (0, 2)])
 

@@ -5,8 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from rubble.arbiters import ContactReader
 from rubble.block import ROTATING, SLIDING
-from rubble.contacts import ContactReader
 from rubble.geometry import moments, place
 from rubble.layer import Domain, RubbleLayer
 from rubble.outline import convex_parts
@@ -24,10 +24,6 @@ def cone_cut(y):
     return convex_parts(np.column_stack([-np.sqrt(square[keep]), z[keep]]))
 
 
-def cone_ratio(y, x, z):
-    return y / x
-
-
 def rectangle(x0, z0, x1, z1):
     return np.array([(x0, z0), (x1, z0), (x1, z1), (x0, z1)], dtype=float)
 
@@ -39,7 +35,7 @@ def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
 
 
 def filled(threads=1, **kwargs):
-    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, ratio=cone_ratio, threads=threads, **kwargs)
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, revolved=True, threads=threads, **kwargs)
     for key in (2, -1, 0, -2, 1):
         for i in range(8):
             add(layer, key, -17.5 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4))
@@ -121,7 +117,7 @@ def test_a_block_without_room_next_door_waits_at_the_border_and_pushes():
 
 
 def test_blocks_are_pushed_outwards_on_both_sides_of_the_cone():
-    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, ratio=cone_ratio)
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, revolved=True)
     for key in (-2, 2):
         add(layer, key, -21.0, -0.2, velocity=(1.0, 0.0))
     left = right = 0.0

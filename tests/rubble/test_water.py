@@ -7,7 +7,8 @@ from rubble.block import make_block
 from rubble.geometry import clip, contiguous, moments, place, submerged
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
-from rubble.water import block_force, inertia, strips, wetted_edges
+from rubble.prism import inertia, strips, wetted_edges
+from rubble.water import block_force
 
 PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=3.0)  # thesis values
 RHO_G = PHYSICS.rho_w * PHYSICS.g
@@ -25,9 +26,10 @@ def add_box(layer, x=0.0, z=0.0, length=10.0, height=3.0, width=2.8, density=846
 
 
 def force_on(edges, state, form=0.0, skin=0.0):
-    out = np.zeros(4)
-    block_force(edges, RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, np.array(state, dtype=float), out)
-    return out
+    out = np.zeros(5)
+    water = np.array([RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0])
+    block_force(edges, water, 1.0, np.array(state, dtype=float), out)
+    return out[:4]
 
 
 def edges_of(polygon, width=2.0):
@@ -160,7 +162,7 @@ def test_mass_of_a_block_and_its_strips():
                        (0.0, 0.0), 0.0, 0.0, 0, 0.0)
     assert block.mass == pytest.approx(900 * 2 * 3 * (1 + 3), rel=1e-14)
     assert block.body.position.x == pytest.approx((3.5 * 1 + 6.5 * 3) / 4)
-    assert moments(clip(block.polygon, 1.0, 0.0, 1e9))[0] == pytest.approx(12.0)
+    assert moments(clip(block.prism.polygon, 1.0, 0.0, 1e9))[0] == pytest.approx(12.0)
 
 
 def test_a_tilted_block_takes_its_strips_along_its_own_axis():
@@ -169,8 +171,8 @@ def test_a_tilted_block_takes_its_strips_along_its_own_axis():
     block = make_block(0, PHYSICS, tilted, middle + np.array([-3.0, 3.0]), np.array([2.0]), 900.0, (0.0, 0.0), 0.0, 0.0,
                        0, 0.4)
     assert tuple(block.body.position) == pytest.approx((4.0, -3.0))
-    assert np.ptp(block.polygon[:, 0]) == pytest.approx(6.0)
-    assert abs(np.sin(block.long_axis)) < 1e-12
+    assert np.ptp(block.prism.polygon[:, 0]) == pytest.approx(6.0)
+    assert abs(np.sin(block.prism.long_axis)) < 1e-12
 
 
 @pytest.mark.parametrize("polygon, cuts, widths, words", [
@@ -185,8 +187,9 @@ def test_a_bad_block_is_refused(polygon, cuts, widths, words):
         layer.add_block(0, np.array(polygon), np.array(cuts), np.array(widths), 900.0, (0, 0), 0.0, 0.0, 0)
 
 
-@pytest.mark.parametrize("change, words", [({"rho_w": 0.0}, "rho_w"), ({"mu_ice_ice": 0.0}, "products"),
-                                           ({"substep": float("nan")}, "substep")])
+@pytest.mark.parametrize("change, words", [({"rho_w": 0.0}, "rho_w"), ({"mu_ice_ice": "slow"}, "rate-dependent"),
+                                           ({"backfill": "some"}, "full or none or filling"),
+                                           ({"backfill_level": 1.0}, "z <= 0"), ({"substep": float("nan")}, "substep")])
 def test_bad_physics_is_refused(change, words):
     with pytest.raises(ValueError, match=words):
         RubblePhysics(**change)

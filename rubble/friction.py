@@ -1,0 +1,133 @@
+"""Friction of a contact, set before it is solved: by the pair, by the speed of slip, and by the third dimension.
+
+A section knows only the plane y. The face of a cone at the point of contact has the unit normal n with
+n_y / n_x = y / x, and its part in the plane has the length ``p = 1 / sqrt(1 + q^2)``, ``q = n_y / p``. With the true
+normal force N and the true slip ``(v_s, s)``, v_s in the plane and s = v_y / p across, ``|s| = hypot(v_s, s)``, the
+contact force on a block is
+
+    in the plane, along the normal    N (p + mu n_y s / |s|)        = N_plane, what the solver finds
+    in the plane, along the face      -mu N v_s / |s|
+    across                            N (n_y - mu p s / |s|)
+
+so the solver needs the coefficient ``mu (v_s / |s|) / (p + mu n_y s / |s|)``. On the axis it is mu.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import carray, cfunc, njit
+from pymunk._chipmunk_cffi import ffi, lib
+
+from rubble.geometry import Array
+from rubble.physics import RATE_DEPENDENT, RubblePhysics
+from rubble.pointers import OFFSETS, IntArray, offsets, pointer
+
+ICE, STRUCTURE, SHEET = 1, 2, 3  #: collision types
+STRUCTURE_SLOT, SHEET_SLOT, UNKNOWN = -1, -2, -3  #: slots of the bodies that are no blocks
+CREEP = 1e-4  #: slip below which a contact counts as sticking in the plane [m/s]
+#: of a law: coefficient (negative: rate-dependent), 1 for a body of revolution, y of the section [m]
+LAW = 3
+#: header: address of the law, number of bodies, addresses of (bodies, slots, rows), rows of the state table, its
+#: address, row of the sheet, addresses of (y, v_y) of the blocks
+_FIXED = 10
+
+
+@njit("float64(float64)", cache=True, nogil=True)
+def rate_dependent(v: float) -> float:
+    """mu = 0.7 - 0.15 log10(v / 1e-6 m/s), between 1e-6 and 1e-2 m/s (Lishman and Polojarvi 2015)."""
+    return 0.7 - 0.15 * np.log10(min(max(abs(v), 1e-6), 1e-2) / 1e-6)
+
+
+@njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True)
+def slot_of(body: int, bodies: IntArray, slots: IntArray) -> int:
+    """Slot of a body by its address; ``bodies`` ascending."""
+    i = np.searchsorted(bodies, body)
+    return slots[i] if i < len(bodies) and bodies[i] == body else UNKNOWN
+
+
+@njit("UniTuple(float64, 2)(float64, float64, float64, float64, float64)", cache=True, nogil=True)
+def tilt(x: float, n_x: float, y_section: float, revolved: float, y: float) -> tuple[float, float]:
+    """(p, n_y) of the face of a body of revolution at x in a section, for a block that stands at y.
+
+    The radius is that of the section's face; where the block's own y is out of its reach, 0.95 of the radius counts.
+    """
+    r = np.hypot(x, y_section)
+    if revolved == 0.0 or r == 0.0:
+        return 1.0, 0.0
+    side = min(max(y, -0.95 * r), 0.95 * r)
+    q = side / np.copysign(np.sqrt(r * r - side * side), x) * n_x
+    p = 1.0 / np.sqrt(1.0 + q * q)
+    return p, q * p
+
+
+@njit("UniTuple(float64, 3)(float64[::1], float64, float64, float64, float64)", cache=True, nogil=True)
+def shares(law: Array, p: float, n_y: float, v_s: float, v_y: float) -> tuple[float, float, float]:
+    """(mu, N / N_plane, share of the friction that acts across) of a contact with the structure."""
+    s = v_y / p
+    speed = np.sqrt(v_s * v_s + s * s)
+    mu = law[0] if law[0] >= 0.0 else rate_dependent(speed)
+    across = s / np.sqrt(speed * speed + CREEP * CREEP)
+    return mu, 1.0 / max(p + mu * n_y * across, 1e-3), across
+
+
+@cfunc("void(voidptr, voidptr, voidptr)", cache=True)
+def _set_friction(arbiter: Any, space: Any, header: Any) -> None:
+    """Pre-solve callback: friction of the pair into the arbiter."""
+    h = carray(header, 22, np.int64)
+    base = carray(arbiter, 8, np.uint8).ctypes.data
+    law = carray(pointer(h[0]), 3, np.float64)
+    u = carray(pointer(base + h[16]), 1, np.float64)
+    if law[0] >= 0.0 and law[1] == 0.0:
+        u[0] = law[0]
+        return
+    bodies, slots = carray(pointer(h[2]), h[1], np.int64), carray(pointer(h[3]), h[1], np.int64)
+    rows, state = carray(pointer(h[4]), h[1], np.int64), carray(pointer(h[6]), (h[5], 6), np.float64)
+    n = carray(pointer(base + h[14]), 2, np.float64)
+    c = carray(pointer(base + h[13]), 1, np.int64)[0]
+    slip, x, n_x, block = 0.0, 0.0, 0.0, -1
+    for side in range(2):
+        body = carray(pointer(base + h[10 + side]), 1, np.int64)[0]
+        slot, sign = slot_of(body, bodies, slots), 1.0 if side == 1 else -1.0
+        r = carray(pointer(c + h[17 + side]), 2, np.float64)
+        row = h[7] if slot == SHEET_SLOT else (rows[slot] if slot >= 0 else -1)
+        if row >= 0:
+            vx, vz = state[row, 3] - state[row, 5] * r[1], state[row, 4] + state[row, 5] * r[0]
+            slip += sign * (n[0] * vz - n[1] * vx)
+        if slot == STRUCTURE_SLOT:
+            x, n_x = r[0], -sign * n[0]
+        block = max(block, slot)
+    if law[1] == 0.0 or block < 0:
+        u[0] = law[0] if law[0] >= 0.0 else rate_dependent(slip)
+        return
+    y, v_y = carray(pointer(h[8]), block + 1, np.float64)[block], carray(pointer(h[9]), block + 1, np.float64)[block]
+    p, n_y = tilt(x, n_x, law[2], law[1], y)
+    mu, more, across = shares(law, p, n_y, slip, v_y)
+    u[0] = mu * more * np.sqrt(max(1.0 - across * across, 0.0))
+
+
+def law_of(coefficient: float | str, revolved: bool = False, y: float = 0.0) -> Array:
+    """Law of a pair, see LAW."""
+    return np.array([-1.0 if coefficient == RATE_DEPENDENT else float(coefficient), float(revolved), y])
+
+
+class PairFriction:
+    """The two laws of a space, ice on ice and ice on structure, and the handlers that apply them."""
+
+    def __init__(self, space: Any, physics: RubblePhysics, revolved: bool, y: float) -> None:
+        self.ice, self.structure = law_of(physics.mu_ice_ice), law_of(physics.mu_structure, revolved, y)
+        self._headers = [np.zeros(_FIXED + OFFSETS, np.int64) for _ in range(2)]
+        for header, law in zip(self._headers, (self.ice, self.structure), strict=True):
+            header[0], header[_FIXED:] = law.ctypes.data, offsets()
+        for pair, kind in (((ICE, ICE), 0), ((ICE, SHEET), 0), ((ICE, STRUCTURE), 1)):
+            handler = lib.cpSpaceAddCollisionHandler(space._space, *pair)
+            handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", _set_friction.address)
+            handler.userData = ffi.cast("void *", self._headers[kind].ctypes.data)
+
+    def watch(self, bodies: IntArray, slots: IntArray, rows: IntArray, state: Array, sheet_row: int, y: Array,
+              v_y: Array) -> None:
+        """Where the callback finds the motion of the bodies; the caller keeps the arrays alive."""
+        for header in self._headers:
+            header[1:_FIXED] = (len(bodies), bodies.ctypes.data, slots.ctypes.data, rows.ctypes.data, len(state),
+                           state.ctypes.data, sheet_row, y.ctypes.data, v_y.ctypes.data)
