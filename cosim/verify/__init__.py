@@ -12,15 +12,23 @@ from typing import Any
 
 from cosim.verify import (
     cantilever,
+    cone,
     dispersion,
     eigenfrequencies,
     envelope,
+    floating,
     frequency_response,
     froude,
     l_beam,
+    momentum,
+    pile,
     poisson,
+    pusher,
+    slope,
     splitting,
     static_deflection,
+    terminal_velocity,
+    wedge,
 )
 from cosim.verify.case import CaseResult, Figure, Quantity
 from cosim.verify.settings import merged, parse
@@ -38,6 +46,14 @@ CASES: dict[str, ModuleType] = {
     "cantilever": cantilever,
     "l-beam": l_beam,
     "froude": froude,
+    "wedge": wedge,
+    "float": floating,
+    "slope": slope,
+    "terminal-velocity": terminal_velocity,
+    "cone": cone,
+    "momentum": momentum,
+    "pile": pile,
+    "pusher": pusher,
 }
 
 
