@@ -63,8 +63,9 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
     if s.sides == "held":
         held[grid.edge_nodes("y-")] = held[grid.edge_nodes("y+")] = True
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
+    windows = max(1, round(scenario.fracture.longest_step / scenario.coupling.window))
     return Sheet(grid, ice, hrennikoff(ice), scenario.coupling.window, held=held, damping=damping,
-                 alpha=scenario.ice.material_damping)
+                 alpha=scenario.ice.material_damping, long_step=windows)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:

@@ -1,4 +1,4 @@
-"""The command line: ``cosim run | replay | compare | info | recover | list``.
+"""The command line: ``cosim run | replay | compare | verify | info | recover | list``.
 
 Only this file exits. Every expected error is one line on standard error: exit 2 for a bad input, 1 for a failed run or
 check. With ``--json`` standard output holds one JSON object and nothing else. Slow imports stay inside the commands.
@@ -146,6 +146,20 @@ def list_scenarios(as_json: JsonOption = False) -> None:
     rows = [{"name": s.name, "title": s.title, "description": s.model.scenario.description,
              "duration_s": s.duration_ns / 1e9} for s in found]
     _print_json({"scenarios": rows}) if as_json else print_scenarios(rows)
+
+
+@app.command()
+def verify(
+    case: Annotated[str | None, typer.Argument(help="a case; all without it")] = None,
+    settings: Annotated[list[str] | None, typer.Option("--set", metavar="K=V", help="parameter of the case")] = None,
+    plots: Annotated[Path | None, typer.Option(help="folder for the figures, as PNG")] = None,
+    quick: Annotated[bool, typer.Option(help="coarser and shorter where a case is slow")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Check the parts against closed forms and the tables and figures of their sources."""
+    from cosim.verify.command import verify_command
+
+    verify_command(case, settings, plots, quick, as_json)
 
 
 def _writable(path: Path) -> Path:

@@ -97,6 +97,7 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
     books = scheduler.ledger
     result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
     result.ledger = {"mass_error": books.mass_error, "momentum_error": books.momentum_error,
+                     **scheduler.sheet.energy, "energy_residual": books.energy_residual,
                      "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,
                      "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
                      "cleared_mass": scheduler.rubble.cleared_mass}

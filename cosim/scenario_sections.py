@@ -162,6 +162,7 @@ class Fracture(Section):
     """[fracture]"""
 
     propagation: Literal["quasi-static"] = "quasi-static"
+    longest_step: Time = 0.2  #: longest step of the sheet while nothing fails and no rubble touches it [s]
 
 
 class Rubble(Section):

@@ -58,9 +58,10 @@ class OverlapContact:
         """L at the sample points (m, SAMPLES) [m] and the outward normal of the structure there (m, SAMPLES, 3)."""
         z = self._z + y[:, 2]
         x = self._x + self._v * t + y[:, 0]
-        face = self._s.face_x(self._sample_y, z[:, None])
+        across = self._sample_y + y[:, 1:2]
+        face = self._s.face_x(across, z[:, None])
         L = np.where(np.isnan(face), 0.0, np.maximum(x[:, None] - face, 0.0))
-        return L, np.nan_to_num(self._s.normal(self._sample_y, z[:, None]), nan=1.0)
+        return L, np.nan_to_num(self._s.normal(across, z[:, None]), nan=1.0)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] for y = u_x, u_y, w: an `EdgeContact`."""
@@ -77,9 +78,8 @@ class OverlapContact:
         per_overlap = (self._law.strength * width / SAMPLES / cos)[..., None] * direction
         force[on] = (per_overlap * np.minimum(L, full)[..., None]).sum(axis=1)
         growing = per_overlap * ((L > 0.0) & (L < full))[..., None]
-        rise = normal[..., 2] / normal[..., 0]  # -dx/dz of the face: dL/dw
-        tangent[on, :, 0] = growing.sum(axis=1)
-        tangent[on, :, 2] = (growing * rise[..., None]).sum(axis=1)
+        for k in range(3):  # dL/dy and dL/dw are -dx/dy and -dx/dz of the face
+            tangent[on, :, k] = (growing * (normal[..., k] / normal[..., 0])[..., None]).sum(axis=1)
         return force, tangent
 
     def _direction(self, normal: Array, sin: Array) -> Array:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 from coupling.interface import NS, SimulationError
 
+ENERGY_TOLERANCE = 1e-3  #: of the work done on the sheet
+
 
 @dataclass
 class Ledger:
@@ -21,6 +23,8 @@ class Ledger:
     handed_over_mass: float = 0.0  #: that has become blocks [kg]
     mass_error: float = 0.0  #: largest so far, relative to the initial mass
     momentum_error: float = 0.0  #: largest of all hand-overs, relative
+    energy_residual: float = 0.0  #: of the sheet, relative to the work done on it
+    _work: float = 0.0
 
     def hand_over(self, t_ns: int, mass: float, trimmed: float, momentum_error: float) -> None:
         """Books one fragment."""
@@ -29,16 +33,29 @@ class Ledger:
         self.momentum_error = max(self.momentum_error, momentum_error)
         self._check("momentum of a hand-over", momentum_error, t_ns)
 
-    def close_window(self, t_ns: int, sheet: float, crushed: float, rubble: float, cleared: float) -> dict[str, float]:
-        """Closes the books of a window; returns them by name [kg]."""
+    def close_window(self, t_ns: int, sheet: float, crushed: float, rubble: float, cleared: float,
+                     energy: dict[str, float]) -> dict[str, float]:
+        """Closes the books of a window; returns them by name [kg], [J].
+
+        ``energy`` holds the sheet's terms; its ``energy_residual`` is set against the work done on the sheet.
+        """
         crushed += self.trimmed_mass
         error = abs(sheet + rubble + crushed + cleared - self.initial_mass) / self.initial_mass
         self.mass_error = max(self.mass_error, error)
         self._check("mass", error, t_ns)
+        self._check("energy of the sheet", self._energy(energy), t_ns, ENERGY_TOLERANCE)
         return {"sheet_mass": sheet, "rubble_mass": rubble, "crushed_mass": crushed, "cleared_mass": cleared,
-                "mass_error": error}
+                "mass_error": error, **energy}
 
-    def _check(self, term: str, error: float, t_ns: int) -> None:
-        if not error <= self.tolerance:
+    def _energy(self, energy: dict[str, float]) -> float:
+        """Residual of the sheet's energy relative to the largest work that was exchanged so far."""
+        if energy:
+            self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]))
+            self.energy_residual = abs(energy["energy_residual"]) / max(self._work, 1.0)
+        return self.energy_residual
+
+    def _check(self, term: str, error: float, t_ns: int, tolerance: float | None = None) -> None:
+        allowed = self.tolerance if tolerance is None else tolerance
+        if not error <= allowed:
             raise SimulationError(f"t = {t_ns / NS:.3f} s: the balance of {term} is off by {error:.3g} (allowed "
-                                  f"{self.tolerance:g}); please report the scenario")
+                                  f"{allowed:g}); please report the scenario")

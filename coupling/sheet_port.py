@@ -22,7 +22,7 @@ from coupling.interface import (
 )
 from coupling.structure import Structure
 from lattice.engine import StepError
-from lattice.sheet import Outcome, Sheet
+from lattice.sheet import Outcome, Sheet, edge_displacement
 
 REACH = 30.0  #: length of sheet behind its edge that the rubble meets [m]
 
@@ -55,7 +55,7 @@ class SheetPort:
         self.edge = CrushedEdge((g.nx, g.ny), g.d, ice.h, tan)
         self.initial_mass = ice.rho_i * ice.h * float(g.area.sum())
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
-        self._t, self._quiet, self._last_load = 0.0, True, np.zeros(3)
+        self._t, self._quiet = 0.0, True
         self._fragments: list[Fragment] = []
         self._at_structure: list[bool] = []
         self._renew_edge()
@@ -76,8 +76,8 @@ class SheetPort:
         load = -out.contact_mean[:, :3].sum(axis=0) if len(out.contact_mean) else np.zeros(3)
         self._t = (t_ns + window_ns) / NS
         self._crush()
-        events = self._events(t_ns + window_ns, out, parts, self._last_load + rubble_load)
-        self._quiet, self._last_load = not out.failed, load
+        events = self._events(out, parts, rubble_load) if out.failure else []
+        self._quiet = not out.failed
         return SheetReport(load, self._fragments, events)
 
     def _release(self, nodes: IntArray) -> None:
@@ -102,7 +102,7 @@ class SheetPort:
         n = self.contact.nodes
         if not len(n):
             return
-        overlap, _ = self.contact.overlap(self._t, np.column_stack((s.u[n], s.q[n, 0])))
+        overlap, _ = self.contact.overlap(self._t, edge_displacement(s, n))
         self.edge.crush(self.front_column, overlap)
         spent = self.edge.spent()
         if len(spent):
@@ -153,6 +153,15 @@ class SheetPort:
         return np.column_stack((x + self.velocity * self._t + s.u[nodes, 0], y + s.u[nodes, 1],
                                 self.z_mid + s.q[nodes, 0]))
 
+    @property
+    def energy(self) -> dict[str, float]:
+        """Energy of the sheet by term [J]; see `lattice.energy`."""
+        e = self.sheet.energy
+        return {"contact_work": e.contact, "rubble_work": e.rubble, "elastic_energy": e.elastic,
+                "foundation_energy": e.foundation, "kinetic_energy": e.kinetic, "damping_loss": e.damping,
+                "scheme_loss": e.scheme, "fracture_loss": e.fracture, "handed_over_energy": e.handed_over,
+                "energy_residual": e.residual}
+
     # ---- what others see --------------------------------------------------------------------------------------
 
     def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
@@ -202,10 +211,12 @@ class SheetPort:
 
     # ---- events -----------------------------------------------------------------------------------------------
 
-    def _events(self, t_ns: int, out: Outcome, parts_before: int, load: Array) -> list[Event]:
-        """Events of a window, with the load that the structure carried before it."""
+    def _events(self, out: Outcome, parts_before: int, rubble_load: Array) -> list[Event]:
+        """Events of a window in which cells failed, with the time of the first failure and the load then."""
+        assert out.failure is not None
+        t_ns, load = round(out.failure[0] * NS), rubble_load - out.failure[1].sum(axis=0)
         events = []
-        if out.failed and self._quiet:
+        if self._quiet:
             where = self._cells_centre(out.failed)
             text = "1 cell fails" if len(out.failed) == 1 else f"{len(out.failed)} cells fail"
             events.append(self._event(t_ns, "cell_failure", load, len(out.failed), where, text))

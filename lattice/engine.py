@@ -19,6 +19,7 @@ import numpy as np
 import scipy.linalg as la
 
 from lattice.assembly import (
+    cell_dof,
     foundation,
     in_plane_mass,
     in_plane_springs,
@@ -77,57 +78,120 @@ class NoContact:
 
 
 @dataclass(frozen=True)
-class Step:
-    """Result of one step: the new state and the contact force, mean over the step and at its end, (m, 3) [N]."""
+class Stage:
+    """One stage of a step: state, acceleration and contact force (m, 3) at its time."""
 
     state: State
-    contact_mean: Array
-    contact_end: Array
+    u_acc: Array  #: (n, 2) [m/s2]
+    q_acc: Array  #: (n, 3) [m/s2], [rad/s2]
+    contact: Array  #: (m, 3) [N]
+
+
+@dataclass(frozen=True)
+class Step:
+    """Result of one step of length dt [s]."""
+
+    dt: float
+    start: State
+    stages: tuple[Stage, Stage]
+
+    @property
+    def state(self) -> State:
+        """State at the end: the scheme is stiffly accurate."""
+        return self.stages[1].state
+
+    @property
+    def contact_mean(self) -> Array:
+        """Contact force, mean over the step, (m, 3) [N]."""
+        return (1.0 - GAMMA) * self.stages[0].contact + GAMMA * self.stages[1].contact
+
+    @property
+    def contact_end(self) -> Array:
+        """Contact force at the end of the step, (m, 3) [N]."""
+        return self.stages[1].contact
+
+    @property
+    def error(self) -> float:
+        """Estimate of the largest local error of a displacement [m].
+
+        The error of the scheme is 0.040 dt^3 times the third derivative (error constant 1/6 - sum b_i a_ij c_j), and
+        that comes from the accelerations of the stages, (1 - gamma) dt apart.
+        """
+        a, b = self.stages
+        jump = max(float(np.abs(b.u_acc - a.u_acc).max()), float(np.abs(b.q_acc[:, 0] - a.q_acc[:, 0]).max()))
+        return 0.040 * self.dt**2 * jump / (1.0 - GAMMA)
+
+    def at(self, share: float) -> State:
+        """State inside the step by cubic Hermite interpolation, 0 <= share <= 1."""
+        if share >= 1.0:
+            return self.state
+        s, r, dt, a, b = share, 1.0 - share, self.dt, self.start, self.state
+
+        def blend(x0: Array, v0: Array, x1: Array, v1: Array) -> tuple[Array, Array]:
+            x = r * r * (1 + 2 * s) * x0 + s * s * (3 - 2 * s) * x1 + dt * s * r * (r * v0 - s * v1)
+            return x, 6 * s * r * (x1 - x0) / dt + r * (1 - 3 * s) * v0 + s * (3 * s - 2) * v1
+
+        u, u_dot = blend(a.u, a.u_dot, b.u, b.u_dot)
+        q, q_dot = blend(a.q, a.q_dot, b.q, b.q_dot)
+        return State(u, q, u_dot, q_dot)
 
 
 class Engine:
-    """Time integration of a sheet that loses cells, with a constant step."""
+    """Time integration of a sheet that loses cells. Factorisations are kept for every step length in use."""
 
-    def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, intact: np.ndarray,
-                 held_in_plane: np.ndarray, damping: float = 0.0, alpha: float = 0.0):
+    def __init__(self, grid: Grid, ice: Ice, springs: Springs, *, held_in_plane: np.ndarray, damping: float = 0.0,
+                 alpha: float = 0.0):
         """``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27)."""
-        self.grid, self.ice, self.dt = grid, ice, dt
+        self.grid, self.ice, self.alpha = grid, ice, alpha
         self.M_u, self.M_q = in_plane_mass(grid, ice), out_of_plane_mass(grid, ice)
         self.C_q, self.k_f = foundation(grid, damping), foundation(grid, ice.k_f)
         self.rows_u, self.rows_q = in_plane_springs(springs), out_of_plane_springs(springs, grid.d)
-        self.alpha, self._a = alpha, GAMMA * dt
-        scale = 1.0 + alpha / self._a
-        held_u = np.repeat(held_in_plane, 2)
-        self._in = CrackedSystem(grid, self.rows_u, intact, self.M_u / self._a**2, scale, held_u)
-        diagonal = self.M_q / self._a**2 + self.C_q / self._a + self.k_f
-        self._out = CrackedSystem(grid, self.rows_q, intact, diagonal, scale, np.zeros(3 * grid.nodes, bool))
+        self.K_cell_u, self.K_cell_q = self.rows_u.T @ self.rows_u, self.rows_q.T @ self.rows_q
+        self.dof_u, self.dof_q = cell_dof(grid, 2), cell_dof(grid, 3)
+        self._held = np.repeat(held_in_plane, 2)
+        self._intact = np.ones(grid.cells, bool)
+        self._systems: dict[float, tuple[CrackedSystem, CrackedSystem]] = {}
+
+    def _use(self, dt: float) -> None:
+        """Makes the systems of this step length the present ones."""
+        a = self._a = GAMMA * dt
+        if dt not in self._systems:
+            scale = 1.0 + self.alpha / a
+            self._systems[dt] = (
+                CrackedSystem(self.grid, self.rows_u, self._intact, self.M_u / a**2, scale, self._held),
+                CrackedSystem(self.grid, self.rows_q, self._intact, self.M_q / a**2 + self.C_q / a + self.k_f, scale,
+                              np.zeros(3 * self.grid.nodes, bool)))
+        self._in, self._out = self._systems[dt]
 
     def remove(self, cells: IntArray) -> None:
-        """Takes failed cells out of both systems (thesis 4.2.1: springs go, mass stays)."""
-        self._in.remove(cells)
-        self._out.remove(cells)
+        """Takes failed cells out of all systems (thesis 4.2.1: springs go, mass stays)."""
+        self._intact[cells] = False
+        for pair in self._systems.values():
+            for system in pair:
+                system.remove(cells)
 
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
-        """Force per displacement of single nodes in x and z, for motions of the length of a stage [N/m]."""
+        """Force per displacement of single nodes in x and z, for motions of the length of a stage [N/m].
+
+        Of the step length used last.
+        """
         x = np.diagonal(self._in.compliance(_dof_u(nodes)))[::2]
         z = np.diagonal(self._out.compliance(_dof_w(nodes)))
         return [(1.0 / max(float(a), 1e-15), 1.0 / float(b)) for a, b in zip(x, z, strict=True)]
 
-    def step(self, t: float, state: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Step:
+    def step(self, t: float, dt: float, state: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Step:
         """One step from time t. ``force_u`` (n, 2) and ``force_q`` (n, 3) are constant external forces.
 
         Displacements are relative to the frame that drifts with the ice.
         """
-        dt, a = self.dt, self._a
-        s1, f1 = self._euler(t + a, state, force_u, force_q, contact)
-        back = (1.0 - GAMMA) * dt
+        self._use(dt)
+        first = self._euler(t + self._a, state, force_u, force_q, contact)
+        back, s1 = (1.0 - GAMMA) * dt, first.state
         start = State(state.u + back * s1.u_dot, state.q + back * s1.q_dot,
-                      state.u_dot + back * (s1.u_dot - state.u_dot) / a,
-                      state.q_dot + back * (s1.q_dot - state.q_dot) / a)
-        s2, f2 = self._euler(t + dt, start, force_u, force_q, contact)
-        return Step(s2, (1.0 - GAMMA) * f1 + GAMMA * f2, f2)
+                      state.u_dot + back * first.u_acc, state.q_dot + back * first.q_acc)
+        return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)))
 
-    def _euler(self, t: float, s: State, force_u: Array, force_q: Array, contact: EdgeContact) -> tuple[State, Array]:
+    def _euler(self, t: float, s: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Stage:
         """Backward Euler over a: (M/a^2 + C/a + K) x = f + M (x_0/a^2 + v_0/a) + C x_0 / a."""
         a, n = self._a, contact.nodes
         b_u = force_u.ravel() + self.M_u * (s.u.ravel() / a**2 + s.u_dot.ravel() / a)
@@ -140,7 +204,8 @@ class Engine:
         if f.any():
             u = u + self._in.response(_dof_u(n), f[:, :2].ravel()).reshape(-1, 2)
             q = q + self._out.response(_dof_w(n), f[:, 2]).reshape(-1, 3)
-        return State(u, q, (u - s.u) / a, (q - s.q) / a), f
+        u_dot, q_dot = (u - s.u) / a, (q - s.q) / a
+        return Stage(State(u, q, u_dot, q_dot), (u_dot - s.u_dot) / a, (q_dot - s.q_dot) / a, f)
 
     def _contact_force(self, t: float, free: Array, contact: EdgeContact) -> Array:
         """Newton iteration on the edge: y = y_free + G f(y) with G the compliance of the edge nodes."""

@@ -18,7 +18,8 @@ from scipy.sparse.linalg import splu
 from lattice.assembly import assemble, cell_dof
 from lattice.grid import Array, Grid, IntArray
 
-MAX_RANK = 120  #: columns of U at which a new factorisation is cheaper than carrying them (60 x 60 nodes)
+MAX_RANK = 60  #: columns of U at which a new factorisation is cheaper than carrying them (60 x 60 nodes)
+MAX_AT_ONCE = 4  #: cells removed between two uses at which a new factorisation is cheaper than an update
 
 
 class CrackedSystem:
@@ -30,11 +31,12 @@ class CrackedSystem:
         self._diagonal, self._free = diagonal, np.flatnonzero(~held)
         self._to_free = np.full(len(held), -1)
         self._to_free[self._free] = np.arange(len(self._free))
-        self._factorise(intact.copy())
+        self._intact = intact.copy()
+        self._pending: list[int] = []
+        self._factorise()
 
-    def _factorise(self, intact: np.ndarray) -> None:
-        self._intact = intact
-        K = assemble(self._grid, self._rows, intact)[self._free][:, self._free]
+    def _factorise(self) -> None:
+        K = assemble(self._grid, self._rows, self._intact)[self._free][:, self._free]
         A = (K + sp.diags(self._diagonal[self._free])).tocsc()
         self._lu = splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         n = len(self._free)
@@ -43,17 +45,22 @@ class CrackedSystem:
         self._point_columns = np.empty((n, 0))
 
     def remove(self, cells: IntArray) -> None:
-        """Takes cells out of the matrix."""
+        """Takes cells out of the matrix; the work is done when it is used next."""
         self._intact[cells] = False
-        if self._U.shape[1] + len(cells) * len(self._rows) > MAX_RANK:
-            self._factorise(self._intact)
-            return
-        U = self._spring_columns(cells)
-        self._U = np.hstack((self._U, U))
-        self._Z = np.hstack((self._Z, self._lu.solve(U)))
-        self._S = la.lu_factor(np.eye(self._U.shape[1]) - self._U.T @ self._Z)
+        self._pending.extend(int(c) for c in cells)
 
-    def _spring_columns(self, cells: IntArray) -> Array:
+    def _update(self) -> None:
+        """Brings the solver up to date with the cells that were removed."""
+        cells, self._pending = self._pending, []
+        if len(cells) > MAX_AT_ONCE or self._U.shape[1] + len(cells) * len(self._rows) > MAX_RANK:
+            self._factorise()
+        elif cells:
+            U = self._spring_columns(cells)
+            self._U = np.hstack((self._U, U))
+            self._Z = np.hstack((self._Z, self._lu.solve(U)))
+            self._S = la.lu_factor(np.eye(self._U.shape[1]) - self._U.T @ self._Z)
+
+    def _spring_columns(self, cells: list[int]) -> Array:
         r = len(self._rows)
         U = np.zeros((len(self._free), r * len(cells)))
         for k, cell in enumerate(cells):
@@ -64,6 +71,7 @@ class CrackedSystem:
 
     def solve(self, b: Array) -> Array:
         """x for a right side b over all degrees of freedom, held ones come back as 0, (n,)."""
+        self._update()
         y = self._lu.solve(b[self._free])
         if self._U.shape[1]:
             y += self._Z @ la.lu_solve(self._S, self._U.T @ y)
@@ -79,6 +87,7 @@ class CrackedSystem:
 
     def compliance(self, dof: IntArray) -> Array:
         """Rows and columns `dof` of the inverse, (m, m); zero for held ones."""
+        self._update()
         if not np.array_equal(dof, self._points):
             self._keep_columns(dof)
         at = self._to_free[dof]
@@ -93,6 +102,7 @@ class CrackedSystem:
 
     def response(self, dof: IntArray, b: Array) -> Array:
         """x for a right side b (m,) that acts on `dof` only, (n,); from the columns that `compliance` keeps."""
+        self._update()
         if not np.array_equal(dof, self._points):
             self._keep_columns(dof)
         y = self._point_columns @ b

@@ -1,4 +1,13 @@
-"""The sheet: lattice, state and the cascade of failures within one step."""
+"""The sheet: lattice, state and the failures within one window.
+
+A window of length dt is solved in one step. If a cell is overloaded at its end, the instant at which its utilisation
+reached 1 is located on the step's interpolation, the cell is removed and the same window is solved again, until no
+cell is overloaded (thesis 4.2.1; one cell at a time, so that the order of a cascade is that of the utilisation).
+
+While nothing but the structure loads the sheet, one long step is taken ahead and the windows are read off its
+interpolation until a cell fails. A long step is refused when its error estimate exceeds `LONG_STEP_ERROR`; the next
+try is half as long, and after an accepted one twice as long. The window of a failure is always solved on its own.
+"""
 
 from __future__ import annotations
 
@@ -8,91 +17,195 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
-from lattice.engine import EdgeContact, Engine, State
+from lattice.energy import EnergyBooks
+from lattice.engine import EdgeContact, Engine, State, Step
 from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.stiffness import Springs
 
+LONG_STEP_ERROR = 2e-4  #: largest estimated error of a displacement in a long step, as share of the thickness
+QUIET = 8  #: windows without a failure before the next long step: waves of the crack must have died down
+LOCATION = 1e-4  #: share of a window to which a failure is located
+
 
 @dataclass
 class Outcome:
-    """What happened in one step."""
+    """What happened in one window."""
 
-    contact_mean: Array  #: contact force on the edge nodes, mean over the step, (m, 3) [N]
+    contact_mean: Array  #: contact force on the edge nodes, mean over the window, (m, 3) [N]
     contact_end: Array  #: the same at its end
     failed: list[int] = field(default_factory=list)  #: cells in the order in which they failed
     pieces: list[IntArray] = field(default_factory=list)  #: nodes of the pieces that left, in order
     parts: int = 1  #: parts of the sheet that stay in the lattice
+    failure: tuple[float, Array] | None = None  #: time of the first failure [s] and contact force then (m, 3) [N]
+
+
+@dataclass
+class LongStep:
+    """A step over several windows, served window by window."""
+
+    step: Step
+    windows: int
+    served: int = 0
+    contact: Array = field(default_factory=lambda: np.empty((0, 3)))  #: force at the last window's end
+    work: float = 0.0  #: of the contact in the windows served, by the trapezoidal rule [J]
+    damping: float = 0.0  #: loss in them, likewise [J]
 
 
 class Sheet:
     """A floe of intact and failed cells that drifts with its frame."""
 
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
-                 alpha: float = 0.0, share: float = 0.2):
+                 alpha: float = 0.0, share: float = 0.2, long_step: int = 1):
         """``held`` (nodes,) nodes that cannot move in plane; ``damping``, ``alpha`` as in `Engine`.
 
         A free piece with less than ``share`` of the floe's area leaves the lattice (see `fragments.loose_pieces`).
+        ``long_step`` is the largest number of windows in one step.
         """
-        self.grid, self.ice, self.held, self.share = grid, ice, held, share
+        self.grid, self.ice, self.held, self.share, self.dt = grid, ice, held, share, dt
         self.intact = np.ones(grid.cells, bool)
         self.present = np.ones(grid.nodes, bool)
         self.state = State.rest(grid.nodes)
-        self.engine = Engine(grid, ice, springs, dt, intact=self.intact, held_in_plane=held, damping=damping,
-                             alpha=alpha)
+        self.engine = Engine(grid, ice, springs, held_in_plane=held, damping=damping, alpha=alpha)
+        self.energy = EnergyBooks(self.engine)
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
+        self._longest, self._windows, self._wait = long_step, min(2, long_step), 0
+        self._long: LongStep | None = None
 
     def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
                 release: Callable[[IntArray], None]) -> Outcome:
-        """One step from time t with failures.
+        """One window from time t under constant external forces (n, 2), (n, 3).
 
-        The most overloaded cell is removed and the same step is solved again from its start, until no cell is
-        overloaded (thesis 4.2.1; one cell at a time, so that the order of a cascade is that of the utilisation).
-        A piece that comes loose leaves at once with its state at the start of the step: ``release`` is called with
+        A piece that comes loose leaves at once with its state at the start of the window: ``release`` is called with
         its nodes and must renew the edge of ``contact``.
         """
-        out = Outcome(np.empty((0, 3)), np.empty((0, 3)), parts=self.parts)
+        force_u[~self.present], force_q[~self.present] = 0.0, 0.0
+        if force_u.any() or force_q.any():
+            self._drop_long_step()
+        else:
+            out = self._from_long_step(t, force_u, force_q, contact)
+            if out is not None:
+                return out
+        return self._solve_window(t, force_u, force_q, contact, release)
+
+    # ---- long steps -------------------------------------------------------------------------------------------
+
+    def _from_long_step(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact) -> Outcome | None:
+        """The window read off a long step, taken if there is none under way; None where it must be solved."""
+        if self._long is None and not self._take_long_step(t, force_u, force_q, contact):
+            return None
+        plan = self._long
+        assert plan is not None
+        state = plan.step.at((plan.served + 1) / plan.windows)
+        utilisation = self._utilisation(state)
+        if utilisation.max() >= 1.0:
+            self._drop_long_step()
+            return None
+        force = contact.evaluate(t + self.dt, edge_displacement(state, contact.nodes))[0]
+        out = Outcome(0.5 * (plan.contact + force), force, parts=self.parts)
+        self._book_served(plan, state, out.contact_mean, contact.nodes)
+        self.state, self.utilisation = state, utilisation
+        plan.contact, plan.served = force, plan.served + 1
+        if plan.served == plan.windows:
+            self.energy.book_step(plan.step, force_u, force_q, contact.nodes, self.live_cells, self.present)
+            self._long = None
+        return out
+
+    def _book_served(self, plan: LongStep, state: State, force: Array, nodes: IntArray) -> None:
+        """Work and loss of a served window, for the case that the step is given up later."""
+        way = edge_displacement(state, nodes) - edge_displacement(self.state, nodes)
+        plan.work += float((force * way).sum())
+        rate = [self.energy.loss_rate(s, self.live_cells, self.present) for s in (self.state, state)]
+        plan.damping += 0.5 * self.dt * sum(rate)
+
+    def _take_long_step(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact) -> bool:
+        if self._wait > 0 or self._longest == 1:
+            self._wait -= 1
+            return False
+        step = self.engine.step(t, self._windows * self.dt, self.state, force_u, force_q, contact)
+        if step.error > LONG_STEP_ERROR * self.ice.h:
+            self._wait, self._windows = self._windows, max(self._windows // 2, 2)
+            return False
+        start = contact.evaluate(t, edge_displacement(self.state, contact.nodes))[0]
+        self._long = LongStep(step, self._windows, contact=start)
+        self._windows = min(2 * self._windows, self._longest)
+        return True
+
+    def _drop_long_step(self) -> None:
+        """Goes on from the last window served."""
+        if self._long is not None:
+            self.energy.book_served(self._long.work, self._long.damping, self.state, self.live_cells, self.present)
+            self._long, self._windows = None, min(2, self._longest)
+
+    # ---- one window -------------------------------------------------------------------------------------------
+
+    def _solve_window(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
+                      release: Callable[[IntArray], None]) -> Outcome:
+        out = Outcome(np.empty((0, 3)), np.empty((0, 3)))
         while True:
-            force_u[~self.present], force_q[~self.present] = 0.0, 0.0
-            step = self.engine.step(t, self.state, force_u, force_q, contact)
+            step = self.engine.step(t, self.dt, self.state, force_u, force_q, contact)
             utilisation = self._utilisation(step.state)
             worst = int(np.argmax(utilisation))
             if utilisation[worst] < 1.0:
                 break
+            if out.failure is None:
+                out.failure = self._locate(t, step, contact)
             self._fail(worst)
             out.failed.append(worst)
             self._release_loose(out, release)
+            force_u[~self.present], force_q[~self.present] = 0.0, 0.0
+        self.energy.book_step(step, force_u, force_q, contact.nodes, self.live_cells, self.present)
         self.state, self.utilisation = step.state, utilisation
+        if out.failed:
+            self._wait, self._windows = QUIET, min(2, self._longest)
         out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
         return out
 
+    def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
+        """Instant at which the first utilisation reaches 1, by bisection, and the contact force then."""
+        low, high = 0.0, 1.0
+        while high - low > LOCATION:
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if self._utilisation(step.at(middle)).max() >= 1.0 else (middle, high)
+        time = t + high * self.dt
+        return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes))[0]
+
     def _utilisation(self, state: State) -> Array:
         strains = cell_strains(self.grid.cell_nodes, self.grid.d, state.u, state.q)
-        utilisation = combined_utilisation(strains, tensile_limits(self.grid, self.live_cells, self.ice), self.ice)
+        utilisation = combined_utilisation(strains, self._limits(), self.ice)
         if not np.isfinite(utilisation).all():
             raise FloatingPointError("the sheet's motion is not finite: use a shorter window (coupling.window)")
         return np.where(self.live_cells, utilisation, 0.0)
 
+    def _limits(self) -> Array:
+        return tensile_limits(self.grid, self.live_cells, self.ice)
+
     def _fail(self, cell: int) -> None:
+        self.energy.book_failure(cell, self.state)
         self.intact[cell] = False
         self.engine.remove(np.array([cell]))
 
     def _release_loose(self, out: Outcome, release: Callable[[IntArray], None]) -> None:
         pieces, self.parts = loose_pieces(self.grid, self.intact, self.present, self.held, self.share)
         for piece in pieces:
+            live = self.live_cells
             self.present[piece] = False
+            self.energy.book_departure(piece, live & ~self.live_cells, self.state)
             out.pieces.append(piece)
             release(piece)
 
     def retire(self, nodes: IntArray) -> None:
         """Takes nodes out whose ice is gone (crushed), with the cells that they hold up."""
+        live = self.live_cells
         self.present[nodes] = False
         cells = np.flatnonzero(np.isin(self.grid.cell_nodes, nodes).any(axis=1) & self.intact)
+        self.energy.book_departure(nodes, live & ~self.live_cells, self.state)
         self.intact[cells] = False
         if len(cells):
             self.engine.remove(cells)
+        self._long = None
 
     @property
     def live_cells(self) -> np.ndarray:
@@ -103,3 +216,8 @@ class Sheet:
     def front(self) -> IntArray:
         """Row of the foremost node of each column, -1 where there is none."""
         return front_rows(self.grid, self.present)
+
+
+def edge_displacement(state: State, nodes: IntArray) -> Array:
+    """u_x, u_y, w of edge nodes, as an `EdgeContact` takes them, (m, 3) [m]."""
+    return np.column_stack((state.u[nodes], state.q[nodes, 0]))

@@ -15,7 +15,7 @@ class StubSheet:
     """Breaks off a piece of 10 kg in its second window."""
 
     def __init__(self, trace):
-        self.trace, self.mass, self.crushed = trace, 100.0, 0.0
+        self.trace, self.mass, self.crushed, self.energy = trace, 100.0, 0.0, {}
 
     def advance(self, t_ns, window_ns, rubble, rubble_load):
         self.trace.append(f"sheet {t_ns}-{t_ns + window_ns} under {rubble.force.sum():g}")

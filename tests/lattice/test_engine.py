@@ -16,18 +16,18 @@ FREE = np.zeros(GRID.nodes, bool)
 NOTHING_U, NOTHING_Q = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
 
 
-def engine(dt, **options):
-    return Engine(GRID, ICE, hrennikoff(ICE), dt, intact=np.ones(GRID.cells, bool), held_in_plane=FREE, **options)
+def engine(**options):
+    return Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=FREE, **options)
 
 
 def heave_error(steps, damping):
     """Phase-plane error after one natural period of w'' + 2 gamma w' + omega^2 w = 0, omega^2 = rho_w g / (rho_i h)."""
     m, omega = ICE.rho_i * ICE.h, np.sqrt(ICE.k_f / (ICE.rho_i * ICE.h))
     T, gamma = 2 * np.pi / omega, damping / (2 * m)
-    e, s = engine(T / steps, damping=damping), State.rest(GRID.nodes)
+    e, s = engine(damping=damping), State.rest(GRID.nodes)
     s.q[:, 0] = 0.1
     for k in range(steps):
-        s = e.step(k * T / steps, s, NOTHING_U, NOTHING_Q, NoContact()).state
+        s = e.step(k * T / steps, T / steps, s, NOTHING_U, NOTHING_Q, NoContact()).state
     omega_d = np.sqrt(omega**2 - gamma**2)
     cos, sin, decay = np.cos(omega_d * T), np.sin(omega_d * T), 0.1 * np.exp(-gamma * T)
     w = decay * (cos + gamma / omega_d * sin)
@@ -42,34 +42,34 @@ def test_heave_converges_at_second_order(damping):
 
 
 def test_a_free_floe_keeps_its_momentum_and_its_rotation():
-    e, s = engine(0.05), State.rest(GRID.nodes)
+    e, s = engine(), State.rest(GRID.nodes)
     rng = np.random.default_rng(4)
     s.u_dot[:] = rng.normal(size=s.u_dot.shape) + np.array([0.3, -0.2])
     mass = e.M_u[::2, None]
     before = (mass * s.u_dot).sum(axis=0)
     for k in range(20):
-        s = e.step(0.05 * k, s, NOTHING_U, NOTHING_Q, NoContact()).state
+        s = e.step(0.05 * k, 0.05, s, NOTHING_U, NOTHING_Q, NoContact()).state
     np.testing.assert_allclose((mass * s.u_dot).sum(axis=0), before, rtol=1e-9)
     assert not np.allclose((mass * s.u_dot).sum(axis=0), -before)  # the wrong sign is told apart
 
 
 def test_a_constant_force_brings_the_floe_to_its_static_draft():
     """Weight F on the whole floe settles at w = F / (rho_w g A)."""
-    e, s = engine(0.5, damping=5e4), State.rest(GRID.nodes)
+    e, s = engine(damping=5e4), State.rest(GRID.nodes)
     F = NOTHING_Q.copy()
     F[:, 0] = -1000.0 * GRID.area
     for k in range(400):
-        s = e.step(0.5 * k, s, NOTHING_U, F, NoContact()).state
+        s = e.step(0.5 * k, 0.5, s, NOTHING_U, F, NoContact()).state
     np.testing.assert_allclose(s.q[:, 0], -1000.0 / ICE.k_f, rtol=1e-6)
 
 
 def energy_left(alpha, shape):
     """Energy after 20 steps that start with the velocity `shape` of w, relative to the start."""
-    e, s = engine(0.002, alpha=alpha), State.rest(GRID.nodes)
+    e, s = engine(alpha=alpha), State.rest(GRID.nodes)
     s.q_dot[:, 0] = shape
     kinetic = 0.5 * (e.M_q[::3] * shape**2).sum()
     for k in range(20):
-        s = e.step(0.002 * k, s, NOTHING_U, NOTHING_Q, NoContact()).state
+        s = e.step(0.002 * k, 0.002, s, NOTHING_U, NOTHING_Q, NoContact()).state
     moving = 0.5 * (e.M_q * s.q_dot.ravel() ** 2).sum()
     stored = 0.5 * s.q.ravel() @ (assemble(GRID, e.rows_q) @ s.q.ravel() + e.k_f * s.q.ravel())
     return (moving + stored) / kinetic
@@ -83,12 +83,12 @@ def test_material_damping_takes_energy_from_bending_only():
 
 
 def test_mirrored_loads_give_mirrored_motion():
-    e, s = engine(0.05), State.rest(GRID.nodes)
+    e, s = engine(), State.rest(GRID.nodes)
     F = NOTHING_Q.copy()
     F[GRID.node(2, 1), 0] = 1e6
     mirror = np.arange(GRID.nodes).reshape(GRID.nx, GRID.ny)[:, ::-1].ravel()
-    a = e.step(0.0, s, NOTHING_U, F, NoContact()).state.q
-    b = e.step(0.0, s, NOTHING_U, F[mirror], NoContact()).state.q
+    a = e.step(0.0, 0.05, s, NOTHING_U, F, NoContact()).state.q
+    b = e.step(0.0, 0.05, s, NOTHING_U, F[mirror], NoContact()).state.q
     np.testing.assert_allclose(b[mirror, 0], a[:, 0], rtol=1e-7, atol=1e-12)
     np.testing.assert_allclose(b[mirror, 2], -a[:, 2], rtol=1e-6, atol=1e-10)
 
