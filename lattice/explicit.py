@@ -1,0 +1,176 @@
+"""The explicit engine: the same lattice as `lattice.engine`, marched in sub-steps below the critical one.
+
+Waves and the inertia of a crack are resolved. The sub-step is a fixed share of the critical step of the true largest
+frequency, damping included; failed cells only lower that frequency, since their mass stays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.sparse as sp
+
+from lattice.assembly import assemble
+from lattice.criteria import mohr_factors
+from lattice.engine import EdgeContact, Engine, State
+from lattice.grid import Array, Grid, IntArray
+from lattice.ice import Ice
+from lattice.kernels import LANES, LINE, LINES, push, sweep
+from lattice.march import march
+from lattice.stepper import critical_step
+from lattice.stiffness import Springs
+
+SHARE_OF_CRITICAL = 0.9  #: longest sub-step
+NOTHING = np.empty(0, np.int64)
+
+
+@dataclass
+class NodeForces:
+    """Forces on single nodes: constant (k, 5), or linear in the displacement where ``tangent`` is used."""
+
+    row: IntArray  #: (k,)
+    column: IntArray  #: (k,)
+    force: Array  #: (k, 5) or, for a contact, (k, 3) [N], [N m]
+    at: Array = field(default_factory=lambda: np.empty((0, 3)))  #: (k, 3) displacement that has this force [m]
+    tangent: Array = field(default_factory=lambda: np.empty((0, 3, 3)))  #: (k, 3, 3) [N/m]
+
+    def padded(self) -> Array:
+        """Forces on all five degrees of freedom, (k, 5)."""
+        return np.ascontiguousarray(np.pad(self.force, ((0, 0), (0, 5 - self.force.shape[1]))))
+
+
+class ExplicitEngine(Engine):
+    """Leapfrog of a sheet that loses cells; `Engine` keeps masses, springs and the stiffness of single points."""
+
+    def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, held_in_plane: np.ndarray,
+                 damping: float = 0.0, alpha: float = 0.0, step: float | None = None):
+        """``window`` [s] is cut into equal sub-steps of at most ``step`` [s] (default: `SHARE_OF_CRITICAL`)."""
+        super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha)
+        self.critical = self._critical_step()
+        if step is not None and not 0.0 < step <= self.critical:
+            raise ValueError(f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
+                             f"{self.critical:.3g} s (largest frequency of the lattice, damping included)")
+        self.window, self.damping = window, damping
+        self.sub_steps = math.ceil(window / (step or SHARE_OF_CRITICAL * self.critical))
+        self.dt = window / self.sub_steps
+        self._allocate(springs)
+
+    def _critical_step(self) -> float:
+        K_u, K_q = assemble(self.grid, self.rows_u).tocsr(), assemble(self.grid, self.rows_q).tocsr()
+        out = critical_step((K_q + sp.diags(self.k_f)).tocsr(), (self.alpha * K_q + sp.diags(self.C_q)).tocsr(), self.M_q)
+        return min(critical_step(K_u, self.alpha * K_u, self.M_u), out)
+
+    def _allocate(self, s: Springs) -> None:
+        """Arrays of `lattice.kernels`."""
+        g, ice, dt = self.grid, self.ice, self.dt
+        columns = -(-g.ny // LANES) * LANES
+        if columns + 2 > LINE:
+            raise ValueError(f"{g.ny} nodes across are too many for the explicit engine: use at most {LINE - LANES}")
+        self.y, self.v = np.zeros((5, g.nx + 1, columns + 1)), np.zeros((5, g.nx + 1, columns + 1))
+        self._rows, self._cells = np.zeros(LINES * LINE), np.zeros((g.nx + 1, columns + 1))
+        self._kick, self._limit = np.zeros((3, g.nx, columns)), np.full((g.nx, columns), np.inf)
+        free = np.where(self._held[::2], 0.0, dt / self.M_u[::2])
+        for k, kick in enumerate((free, dt / self.M_q[::3], dt / self.M_q[1::3])):
+            self._kick[k, :, : g.ny] = kick.reshape(g.nx, g.ny)
+        self._spring = np.array([0.5 * s.K_n_axi, 0.5 * s.K_s_axi, 0.5 * s.K_out, 0.5 * s.G_r_axi, 0.5 * s.G_t_axi,
+                                 0.5 * s.K_n_dia, 0.5 * s.G_dia, 0.5 * g.d])
+        per_mass = dt / (ice.rho_i * ice.h)
+        self._pace = np.array([self.alpha, dt + self.alpha, per_mass * ice.k_f,
+                               per_mass * (self.damping - self.alpha * ice.k_f)])
+        F_1, self._F_2 = mohr_factors(ice.nu, ice.sigma_c / ice.sigma_t)
+        ratio = 1.0 if ice.sigma_t == ice.sigma_f else ice.sigma_t / ice.sigma_f
+        self._crack = np.array([F_1, 0.5 * ice.h * ratio])
+        self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
+
+    def set_cells(self, live: np.ndarray, limits: Array, present: np.ndarray) -> None:
+        """Cells that carry force, their tensile limits [Pa] (cells,), and the nodes that are still in the lattice."""
+        g = self.grid
+        shape = (g.nx - 1, g.ny - 1)
+        self._cells[1 : g.nx, 1 : g.ny] = live.reshape(shape)
+        threshold = np.where(live, 4.0 * g.d * self._F_2 * limits / self.ice.E, np.inf)
+        self._limit[: g.nx - 1, : g.ny - 1] = threshold.reshape(shape)
+        gone = ~present.reshape(g.nx, g.ny)
+        for array in (self.y, self.v):
+            array[:, : g.nx, : g.ny][:, gone] = 0.0
+
+    # ---- states ------------------------------------------------------------------------------------------------
+
+    def start(self, s: State, present: np.ndarray, forces: tuple[NodeForces, ...]) -> None:
+        """Takes over a state; the velocity goes back by half a sub-step."""
+        on = present[:, None]
+        self._put(self.y, np.hstack((s.u, s.q)) * on)
+        self._put(self.v, np.hstack((s.u_dot, s.q_dot)) * on)
+        x, v = self.y.copy(), self.v.copy()
+        self.v[:] = 1.5 * v - 0.5 * self._next_velocity(x + self.alpha * v, v, forces)
+        self.y[:] = x + self.alpha * self.v
+
+    def state(self, old: State, present: np.ndarray, forces: tuple[NodeForces, ...]) -> State:
+        """The state now under these forces; nodes that have left keep theirs."""
+        v = 0.5 * (self.v + self._next_velocity(self.y.copy(), self.v, forces))
+        x, x_dot, on = self._get(self.y - self.alpha * self.v), self._get(v), present[:, None]
+        return State(np.where(on, x[:, :2], old.u), np.where(on, x[:, 2:], old.q),
+                     np.where(on, x_dot[:, :2], old.u_dot), np.where(on, x_dot[:, 2:], old.q_dot))
+
+    def _next_velocity(self, y: Array, v: Array, forces: tuple[NodeForces, ...]) -> Array:
+        v = v.copy()
+        sweep(y, v, self._cells, self._kick, self._spring, self._pace, self._rows)
+        for f in forces:
+            push(f.row, f.column, f.padded(), y, v, self._kick, self._pace[1])
+        return v
+
+    def _put(self, array: Array, values: Array) -> None:
+        array[:] = 0.0
+        array[:, : self.grid.nx, : self.grid.ny] = values.T.reshape(5, self.grid.nx, self.grid.ny)
+
+    def _get(self, array: Array) -> Array:
+        return array[:, : self.grid.nx, : self.grid.ny].reshape(5, -1).T
+
+    def displacement(self, ago: float = 0.0) -> tuple[Array, Array]:
+        """u (n, 2) and q (n, 3) now, or ``ago`` sub-steps before, up to one."""
+        x = self._get(self.y - (self.alpha + ago * self.dt) * self.v)
+        return np.ascontiguousarray(x[:, :2]), np.ascontiguousarray(x[:, 2:])
+
+    # ---- forces ------------------------------------------------------------------------------------------------
+
+    def constant(self, force_u: Array, force_q: Array) -> NodeForces:
+        """Forces (n, 2), (n, 3) that are not zero."""
+        force = np.hstack((force_u, force_q))
+        nodes = np.flatnonzero(force.any(axis=1))
+        return NodeForces(*np.divmod(nodes, self.grid.ny), np.ascontiguousarray(force[nodes]))
+
+    def contact(self, t: float, contact: EdgeContact) -> NodeForces:
+        """Contact force and tangent at time t for the displacements now."""
+        return self.contact_at(t, contact, self.at(contact.nodes)[:, :3])
+
+    def contact_at(self, t: float, contact: EdgeContact, at: Array) -> NodeForces:
+        """The same for displacements ``at`` (m, 3) [m]."""
+        force, tangent = contact.evaluate(t, np.ascontiguousarray(at))
+        return NodeForces(*np.divmod(contact.nodes, self.grid.ny), force, np.ascontiguousarray(at), tangent)
+
+    def at(self, nodes: IntArray) -> Array:
+        """Displacements of some nodes now, (k, 5)."""
+        row, column = np.divmod(nodes, self.grid.ny)
+        return (self.y[:, row, column] - self.alpha * self.v[:, row, column]).T
+
+    def march(self, steps: int, load: NodeForces, contact: NodeForces) -> tuple[int, Array, bool]:
+        """Up to ``steps`` sub-steps: those made, the sum of the contact forces (m, 3), and whether a cell failed."""
+        m = len(contact.row)
+        total = np.zeros((m, 3))
+        done, count = march(steps, self.y, self.v, self._cells, self._kick, self._limit, self._spring, self._pace,
+                            self._crack, self._rows, load.row, load.column, load.force, contact.row, contact.column,
+                            contact.at, contact.force, contact.tangent, np.zeros((m, 5)), total)
+        return done, total, count > 0
+
+    def loss_rate(self) -> float:
+        """Power that hydrodynamic and material damping take now [W]."""
+        force, unit = np.zeros_like(self.v), np.ones_like(self._kick)
+        sweep(self.v.copy(), force, self._cells, unit, self._spring, np.zeros(4), self._rows)
+        water = float((self.C_q[::3] * self._get(self.v)[:, 2] ** 2).sum())
+        return water - self.alpha * float((self.v * force).sum())
+
+    def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
+        """As in `Engine`, for motions of the length of a window."""
+        self._use(self.window)
+        return super().point_stiffness(nodes)

@@ -1,0 +1,133 @@
+"""The sheet on the explicit engine: dynamic crack propagation.
+
+A cell fails in the sub-step in which its utilisation reaches 1, the time of which is interpolated. Nothing is solved
+again: what the cell carried goes out as waves, and the next cell fails when they have loaded it. Loose pieces leave
+in the same sub-step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from lattice.engine import EdgeContact, State
+from lattice.explicit import ExplicitEngine, NodeForces
+from lattice.grid import Array, Grid, IntArray
+from lattice.ice import Ice
+from lattice.sheet import Outcome, Sheet, edge_displacement
+from lattice.stiffness import Springs
+
+CONTACT_TIME = 1e-3  #: longest time between two evaluations of the contact law, linear in between [s]
+
+
+class ExplicitSheet(Sheet):
+    """`Sheet` with waves and the inertia of the crack."""
+
+    def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
+                 alpha: float = 0.0, share: float = 0.2, step: float | None = None,
+                 contact_time: float = CONTACT_TIME):
+        """As `Sheet`; ``step`` is the largest sub-step [s] (default: a share of the critical one)."""
+        super().__init__(grid, ice, springs, dt, held=held, damping=damping, alpha=alpha, share=share)
+        self.engine: ExplicitEngine = ExplicitEngine(grid, ice, springs, dt, held_in_plane=held, damping=damping,
+                                                     alpha=alpha, step=step)
+        self.energy.engine = self.engine
+        self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
+        self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
+        self.failed_cells: list[int] = []  #: which they were
+
+    def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
+                release: Callable[[IntArray], None]) -> Outcome:
+        """One window from time t, as `Sheet.advance`; `release` is called with the state of that instant.
+
+        The mean contact force has a row for each node of the contact, then one for each node that left with force.
+        """
+        out, impulse = Outcome(np.empty((0, 3)), np.empty((0, 3))), np.zeros((self.grid.nodes, 3))
+        self._begin(t, force_u, force_q, contact)
+        done, rate = 0, self.engine.loss_rate()
+        while done < self.engine.sub_steps:
+            load = self._loads(force_u, force_q)
+            made, failed = self._march(t, done, load, contact, impulse)
+            done += made
+            rate = self._book_damping(made, rate)
+            if failed:
+                self._break(t, done, (load,), contact, out, release)
+        self._end(t + self.dt, self._loads(force_u, force_q), contact, out)
+        self._means(out, impulse / self.dt, contact.nodes)
+        return out
+
+    def _loads(self, force_u: Array, force_q: Array) -> NodeForces:
+        force_u[~self.present], force_q[~self.present] = 0.0, 0.0
+        return self.engine.constant(force_u, force_q)
+
+    def _begin(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact) -> None:
+        e = self.engine
+        e.set_cells(self.live_cells, self._limits(), self.present)
+        touch = e.contact_at(t, contact, edge_displacement(self.state, contact.nodes))
+        e.start(self.state, self.present, (self._loads(force_u, force_q), touch))
+
+    def _march(self, t: float, done: int, load: NodeForces, contact: EdgeContact, impulse: Array) -> tuple[int, bool]:
+        """Sub-steps to the next evaluation of the contact, or to a failure."""
+        e = self.engine
+        steps = min(self.block, e.sub_steps - done)
+        patch = e.contact(t + (done + 0.5 * steps) * e.dt, contact)
+        loaded = load.row * self.grid.ny + load.column
+        before = e.at(contact.nodes), e.at(loaded)
+        made, total, failed = e.march(steps, load, patch)
+        impulse[contact.nodes] += e.dt * total
+        self.energy.contact += float((total / made * (e.at(contact.nodes) - before[0])[:, :3]).sum())
+        self.energy.rubble += float((load.force * (e.at(loaded) - before[1])).sum())
+        return made, failed
+
+    # ---- failure -----------------------------------------------------------------------------------------------
+
+    def _break(self, t: float, done: int, loads: tuple[NodeForces, ...], contact: EdgeContact, out: Outcome,
+               release: Callable[[IntArray], None]) -> None:
+        """Takes out the cells that reached their limit in the last sub-step, in the order in which they did."""
+        e, now = self.engine, t + done * self.engine.dt
+        cells, share = self._overloaded()
+        if not len(cells):
+            return
+        patch = e.contact(now, contact)
+        self.state = e.state(self.state, self.present, (*loads, patch))
+        if out.failure is None:
+            out.failure = (now - (1.0 - share[0]) * e.dt, patch.force)
+        for cell, s in zip(cells, share, strict=True):
+            self._fail(int(cell))
+            out.failed.append(int(cell))
+            self.failed_cells.append(int(cell))
+            self.failure_times.append(now - (1.0 - s) * e.dt)
+        self._release_loose(out, release)
+        e.set_cells(self.live_cells, self._limits(), self.present)
+
+    def _overloaded(self) -> tuple[IntArray, Array]:
+        """Cells at or past their limit, and the share of the last sub-step at which each reached it."""
+        now, before = (self._utilisation(self._at(ago)) for ago in (0.0, 1.0))
+        cells = np.flatnonzero(now >= 1.0)
+        rise = np.maximum(now[cells] - before[cells], 1e-300)
+        share = np.clip((1.0 - before[cells]) / rise, 0.0, 1.0)
+        order = np.lexsort((-now[cells], share))
+        return cells[order], share[order]
+
+    def _at(self, ago: float) -> State:
+        u, q = self.engine.displacement(ago)
+        return State(u, q, self.state.u_dot, self.state.q_dot)
+
+    # ---- end of a window ---------------------------------------------------------------------------------------
+
+    def _end(self, t: float, load: NodeForces, contact: EdgeContact, out: Outcome) -> None:
+        patch = self.engine.contact(t, contact)
+        self.state = self.engine.state(self.state, self.present, (load, patch))
+        self.utilisation = self._utilisation(self.state)
+        self.energy.measure(self.state, self.live_cells, self.present)
+        out.contact_end, out.parts = patch.force, self.parts
+
+    def _means(self, out: Outcome, mean: Array, nodes: IntArray) -> None:
+        left = np.setdiff1d(np.flatnonzero(mean.any(axis=1)), nodes)
+        out.contact_mean = mean[np.concatenate((nodes, left))]
+
+    def _book_damping(self, made: int, before: float) -> float:
+        """Loss of the last sub-steps by the trapezoidal rule."""
+        rate = self.engine.loss_rate()
+        self.energy.damping += 0.5 * made * self.engine.dt * (before + rate)
+        return rate
