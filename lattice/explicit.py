@@ -41,6 +41,16 @@ class NodeForces:
         return np.ascontiguousarray(np.pad(self.force, ((0, 0), (0, 5 - self.force.shape[1]))))
 
 
+@dataclass(frozen=True)
+class Marched:
+    """Some sub-steps."""
+
+    steps: int
+    failed: bool  #: a cell is overloaded at the end of the last one
+    contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
+    loss: float  #: taken by hydrodynamic and material damping [J]
+
+
 class ExplicitEngine(Engine):
     """Leapfrog of a sheet that loses cells; `Engine` keeps masses, springs and the stiffness of single points."""
 
@@ -69,6 +79,7 @@ class ExplicitEngine(Engine):
         if columns + 2 > LINE:
             raise ValueError(f"{g.ny} nodes across are too many for the explicit engine: use at most {LINE - LANES}")
         self.y, self.v = np.zeros((5, g.nx + 1, columns + 1)), np.zeros((5, g.nx + 1, columns + 1))
+        self._scratch = np.zeros((3, *self.y.shape))
         self._rows, self._cells = np.zeros(LINES * LINE), np.zeros((g.nx + 1, columns + 1))
         self._kick, self._limit = np.zeros((3, g.nx, columns)), np.full((g.nx, columns), np.inf)
         free = np.where(self._held[::2], 0.0, dt / self.M_u[::2])
@@ -154,21 +165,15 @@ class ExplicitEngine(Engine):
         row, column = np.divmod(nodes, self.grid.ny)
         return (self.y[:, row, column] - self.alpha * self.v[:, row, column]).T
 
-    def march(self, steps: int, load: NodeForces, contact: NodeForces) -> tuple[int, Array, bool]:
-        """Up to ``steps`` sub-steps: those made, the sum of the contact forces (m, 3), and whether a cell failed."""
+    def march(self, steps: int, load: NodeForces, contact: NodeForces, lively: bool) -> Marched:
+        """Up to ``steps`` sub-steps, to the first failure; damping is taken stock of in each or in the first only."""
         m = len(contact.row)
         total = np.zeros((m, 3))
-        done, count = march(steps, self.y, self.v, self._cells, self._kick, self._limit, self._spring, self._pace,
-                            self._crack, self._rows, load.row, load.column, load.force, contact.row, contact.column,
-                            contact.at, contact.force, contact.tangent, np.zeros((m, 5)), total)
-        return done, total, count > 0
-
-    def loss_rate(self) -> float:
-        """Power that hydrodynamic and material damping take now [W]."""
-        force, unit = np.zeros_like(self.v), np.ones_like(self._kick)
-        sweep(self.v.copy(), force, self._cells, unit, self._spring, np.zeros(4), self._rows)
-        water = float((self.C_q[::3] * self._get(self.v)[:, 2] ** 2).sum())
-        return water - self.alpha * float((self.v * force).sum())
+        made, count, loss = march(steps, 1 if lively else steps, self.y, self.v, self._scratch, self._cells,
+                                  self._kick, self._limit, self._spring, self._pace, self._crack, self._rows,
+                                  load.row, load.column, load.force, contact.row, contact.column, contact.at,
+                                  contact.force, contact.tangent, np.zeros((m, 5)), total)
+        return Marched(made, count > 0, total / made, loss * self.dt * (1 if lively else made))
 
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
         """As in `Engine`, for motions of the length of a window."""

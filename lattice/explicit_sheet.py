@@ -12,13 +12,14 @@ from collections.abc import Callable
 import numpy as np
 
 from lattice.engine import EdgeContact, State
-from lattice.explicit import ExplicitEngine, NodeForces
+from lattice.explicit import ExplicitEngine, Marched, NodeForces
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.sheet import Outcome, Sheet, edge_displacement
 from lattice.stiffness import Springs
 
 CONTACT_TIME = 1e-3  #: longest time between two evaluations of the contact law, linear in between [s]
+LIVELY = 1e-6  #: loss in such a time, as share of the stored energy, from which on damping is booked every sub-step
 
 
 class ExplicitSheet(Sheet):
@@ -33,6 +34,7 @@ class ExplicitSheet(Sheet):
                                                      alpha=alpha, step=step)
         self.energy.engine = self.engine
         self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
+        self._lively = True
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
         self.failed_cells: list[int] = []  #: which they were
 
@@ -44,13 +46,12 @@ class ExplicitSheet(Sheet):
         """
         out, impulse = Outcome(np.empty((0, 3)), np.empty((0, 3))), np.zeros((self.grid.nodes, 3))
         self._begin(t, force_u, force_q, contact)
-        done, rate = 0, self.engine.loss_rate()
+        done = 0
         while done < self.engine.sub_steps:
             load = self._loads(force_u, force_q)
-            made, failed = self._march(t, done, load, contact, impulse)
-            done += made
-            rate = self._book_damping(made, rate)
-            if failed:
+            marched = self._march(t, done, load, contact, impulse)
+            done += marched.steps
+            if marched.failed:
                 self._break(t, done, (load,), contact, out, release)
         self._end(t + self.dt, self._loads(force_u, force_q), contact, out)
         self._means(out, impulse / self.dt, contact.nodes)
@@ -66,18 +67,20 @@ class ExplicitSheet(Sheet):
         touch = e.contact_at(t, contact, edge_displacement(self.state, contact.nodes))
         e.start(self.state, self.present, (self._loads(force_u, force_q), touch))
 
-    def _march(self, t: float, done: int, load: NodeForces, contact: EdgeContact, impulse: Array) -> tuple[int, bool]:
+    def _march(self, t: float, done: int, load: NodeForces, contact: EdgeContact, impulse: Array) -> Marched:
         """Sub-steps to the next evaluation of the contact, or to a failure."""
         e = self.engine
         steps = min(self.block, e.sub_steps - done)
         patch = e.contact(t + (done + 0.5 * steps) * e.dt, contact)
         loaded = load.row * self.grid.ny + load.column
         before = e.at(contact.nodes), e.at(loaded)
-        made, total, failed = e.march(steps, load, patch)
-        impulse[contact.nodes] += e.dt * total
-        self.energy.contact += float((total / made * (e.at(contact.nodes) - before[0])[:, :3]).sum())
+        out = e.march(steps, load, patch, self._lively)
+        impulse[contact.nodes] += out.steps * e.dt * out.contact
+        self.energy.contact += float((out.contact * (e.at(contact.nodes) - before[0])[:, :3]).sum())
         self.energy.rubble += float((load.force * (e.at(loaded) - before[1])).sum())
-        return made, failed
+        self.energy.damping += out.loss
+        self._lively = out.failed or out.loss * self.block > LIVELY * self.energy.stored * out.steps
+        return out
 
     # ---- failure -----------------------------------------------------------------------------------------------
 
@@ -125,9 +128,3 @@ class ExplicitSheet(Sheet):
     def _means(self, out: Outcome, mean: Array, nodes: IntArray) -> None:
         left = np.setdiff1d(np.flatnonzero(mean.any(axis=1)), nodes)
         out.contact_mean = mean[np.concatenate((nodes, left))]
-
-    def _book_damping(self, made: int, before: float) -> float:
-        """Loss of the last sub-steps by the trapezoidal rule."""
-        rate = self.engine.loss_rate()
-        self.energy.damping += 0.5 * made * self.engine.dt * (before + rate)
-        return rate
