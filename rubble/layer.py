@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from math import floor, inf, isfinite, pi
+from typing import Any
 
 import numpy as np
 
@@ -61,9 +62,17 @@ class RubbleLayer:
         self.cleared_momentum = np.zeros(3)  #: true mass times velocity at leaving [N s]
         self.crushed_momentum = np.zeros(3)
         self.time = 0.0  #: [s]
+        self.hold_across = False  #: blocks stay in their section, while initial rubble settles
         self.threads, self._pool = threads, ThreadPoolExecutor(threads) if threads > 1 else None
         self._window = 0.0
         self._next = 0
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {k: v for k, v in self.__dict__.items() if k != "_pool"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._pool = ThreadPoolExecutor(self.threads) if self.threads > 1 else None
 
     # ---- sections ---------------------------------------------------------------------------------------------
 
@@ -136,6 +145,11 @@ class RubbleLayer:
         if section in self.sections:
             self.sections[section].remove_sheet()
 
+    def set_form_drag(self, coefficient: float) -> None:
+        """Another C_d for a while: rubble settles sooner in thick water."""
+        for section in self.sections.values():
+            section.water[2] = coefficient
+
     # ---- motion -----------------------------------------------------------------------------------------------
 
     def advance(self, n_substeps: int) -> None:
@@ -169,7 +183,9 @@ class RubbleLayer:
         load = side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, section.polygons, section.corners,
                           section.moved, section.state, section.sums, side)
         for block, (y, v_y), (fx, fy, fz) in zip(section.blocks, side.T.tolist(), load.tolist(), strict=True):
-            block.y, block.v_y, block.load = y, v_y, (fx, fy, fz)
+            block.load = fx, fy, fz
+            if not self.hold_across:
+                block.y, block.v_y = y, v_y
         self._update_phases(section)
         if section.heavy[0, 0] > 0:
             mass, momentum = crush(section, self._window)

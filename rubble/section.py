@@ -44,8 +44,8 @@ class Section:
         self.losses = np.zeros(4)
         self.sheet_sums = np.zeros(8)  #: see `contacts.accumulate`
         self.heavy = np.zeros((HEAVY + 1, HEAVY_COLUMNS))
-        self._water = np.array([physics.rho_w * physics.g, physics.rho_w / 2, physics.form_drag, physics.skin_drag,
-                                physics.substep, physics.backfill_level, physics.filling_rate])
+        self.water = np.array([physics.rho_w * physics.g, physics.rho_w / 2, physics.form_drag, physics.skin_drag,
+                               physics.substep, physics.backfill_level, physics.filling_rate])
         for solid in self.solids:
             self._add_solid(solid)
         self._connect()
@@ -199,7 +199,7 @@ class Section:
         last = (self._addresses, self._slots, self._row, state, self._friction.structure, self.side, self._limit,
                 self.sheet_sums, self.sums, nodes, self.heavy)
         done = run(n, self.physics.substep, self._calls.table, reader.header, state, self._force, self._row,
-                   self._edges, self._offset, self._dead, self._water, self._flooded, self.losses, self._sheet_row,
+                   self._edges, self._offset, self._dead, self.water, self._flooded, self.losses, self._sheet_row,
                    spring, driver, reader.bodies, reader.values, *last[:2], *last[4:])
         strange = done < 0
         if 0 <= done < n:  # the contacts of this sub-step did not fit: enlarge, read and add them

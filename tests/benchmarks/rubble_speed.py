@@ -1,0 +1,124 @@
+"""Speed of the rubble: 500 blocks in 15 sections, beside plain pymunk with the same pile in the same run.
+
+    python tests/benchmarks/rubble_speed.py [--seconds 20] [--repeat 3]
+
+Claims: at least 1.8 times real time on one core, 3 times on two; less than 30 % slower than plain pymunk; the same bits
+with one thread and with two. Layer and peer alternate, and the best of the repeats counts: other work on the machine
+only ever slows a run down.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pymunk
+
+from rubble.geometry import place
+from rubble.layer import RubbleLayer
+from rubble.physics import RubblePhysics
+from rubble.space import new_space
+
+SECTIONS, BLOCKS, WIDTH, SIZE = 15, 500, 5.6, (4.0, 2.0)
+PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=SIZE[1], mu_ice_ice=0.1, mu_structure=0.1,
+                        restitution=0.1, added_mass=0.2, added_inertia=0.2, contact_strength=4e6)
+WINDOW = 10  #: sub-steps, the default coupling window of 50 ms
+#: an upturned bin with sloping sides: blocks pile up under it as between sheet and structure
+BIN = [np.array([(-14.0, -12.0), (-2.0, -4.0), (-14.0, -2.0)]), np.array([(14.0, -12.0), (14.0, -2.0), (2.0, -4.0)]),
+       np.array([(-14.0, -4.0), (14.0, -4.0), (14.0, -2.0), (-14.0, -2.0)])]
+
+
+def outlines(section: int) -> list[tuple[np.ndarray, float]]:
+    """Outlines and tilts of the blocks of one section."""
+    random = np.random.default_rng(section)
+    box = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * np.array(SIZE) / 2.0
+    count = BLOCKS // SECTIONS + (section < BLOCKS % SECTIONS)
+    places = [(-5.0 + 5.0 * (i % 3), -16.0 - 4.6 * (i // 3), random.uniform(-0.4, 0.4)) for i in range(count)]
+    return [(place(box, x, z, angle, 0.0, 0.0), angle) for x, z, angle in places]
+
+
+def our_layer(threads: int) -> RubbleLayer:
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=lambda y: BIN, threads=threads)
+    for key in range(SECTIONS):
+        for outline, angle in outlines(key):
+            middle = float(outline.mean(axis=0) @ [np.cos(angle), np.sin(angle)])
+            layer.add_block(key, outline, middle + np.array([-0.5, 0.5]) * SIZE[0], np.array([WIDTH]), 846.0,
+                            (0.0, 0.0), 0.0, layer.centre(key), 0, angle)
+    return layer
+
+
+class Plain:
+    """The same pile in pymunk alone: net buoyancy as gravity, water as damping, no loads, no water forces."""
+
+    def __init__(self, threads: int) -> None:
+        self.spaces = [self._space(key) for key in range(SECTIONS)]
+        self.pool = ThreadPoolExecutor(threads) if threads > 1 else None
+
+    @staticmethod
+    def _space(key: int) -> pymunk.Space:
+        space = new_space(PHYSICS)
+        space.gravity, space.damping = (0.0, 9.81 * (1006.0 / 846.0 - 1.0)), 0.6
+        for solid in BIN:
+            space.add(pymunk.Poly(space.static_body, solid.tolist()))
+        mass = 846.0 * SIZE[0] * SIZE[1] * WIDTH
+        for outline, angle in outlines(key):
+            body = pymunk.Body(mass, mass * (SIZE[0] ** 2 + SIZE[1] ** 2) / 12.0)
+            body.position, body.angle = tuple(outline.mean(axis=0).tolist()), angle
+            shape = pymunk.Poly(body, [(x * SIZE[0] / 2, z * SIZE[1] / 2) for x, z in
+                                       ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            shape.friction = 0.1**0.5
+            space.add(body, shape)
+        for shape in space.static_body.shapes:
+            shape.friction = 0.1**0.5
+        return space
+
+    def advance(self, n: int) -> None:
+        def steps(space: pymunk.Space) -> None:
+            for _ in range(n):
+                space.step(PHYSICS.substep)
+        list((self.pool.map if self.pool else map)(steps, self.spaces))
+
+
+def factor(make, threads: int, seconds: float) -> tuple[float, object]:
+    """Simulated over wall time, from the start until the pile has formed, and what ran."""
+    what = make(threads)
+    start = time.perf_counter()
+    for _ in range(round(seconds / PHYSICS.substep / WINDOW)):
+        what.advance(WINDOW)
+    return seconds / (time.perf_counter() - start), what
+
+
+def measure(seconds: float, repeat: int) -> dict[str, float]:
+    """Best factors of layer and peer with one thread and two, and whether the bits are the same."""
+    best: dict[str, float] = {}
+    bits = {}
+    for _ in range(repeat):
+        for threads in (1, 2):
+            for name, make in (("layer", our_layer), ("plain", Plain)):
+                rate, what = factor(make, threads, seconds)
+                best[f"{name}_{threads}"] = max(rate, best.get(f"{name}_{threads}", 0.0))
+                if isinstance(what, RubbleLayer):
+                    bits[threads] = what.table().position.tobytes()
+    return {**best, "same_bits": float(bits[1] == bits[2]),
+            "overhead": best["plain_1"] / best["layer_1"] - 1.0}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--repeat", type=int, default=3)
+    a = parser.parse_args()
+    our_layer(1).advance(1)  # compiles
+    r = measure(a.seconds, a.repeat)
+    print(f"{BLOCKS} blocks in {SECTIONS} sections, {a.seconds:g} s, load of the machine {os.getloadavg()[0]:.1f}")
+    for threads, claim in ((1, 1.8), (2, 3.0)):
+        print(f"{threads} thread(s): layer {r[f'layer_{threads}']:.2f} x real time (claim {claim}), "
+              f"plain pymunk {r[f'plain_{threads}']:.2f}")
+    print(f"overhead on one thread {r['overhead']:.0%} (claim < 30 %), same bits {bool(r['same_bits'])}")
+
+
+if __name__ == "__main__":
+    main()
