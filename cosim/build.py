@@ -8,7 +8,7 @@ import numpy as np
 
 from cosim.observer import RunInfo
 from cosim.scenario import Scenario
-from coupling.contact import ContactLaw
+from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import Array, IntArray
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
@@ -29,9 +29,9 @@ def build(scenario: Scenario) -> Scheduler:
     structure = build_structure(scenario)
     ice = build_ice(scenario)
     sheet = build_sheet(scenario, ice, structure)
-    law = ContactLaw(scenario.contact.strength, scenario.contact.friction)
+    law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
-    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns)
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, CONTACTS[scenario.contact.model])
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     ledger = Ledger(port.initial_mass)
     return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[scenario.coupling.scheme])

@@ -147,8 +147,8 @@ class Structure(Section):
 class Contact(Section):
     """[contact] Sheet against structure."""
 
-    model: Literal["overlap"] = "overlap"  #: the thesis's contact of 6.2
-    strength: Stress  #: contact parameter: "purely artificial" in the thesis [Pa]
+    model: Literal["overlap", "crushing"] = "overlap"  #: the thesis's contact of 6.2, or ice that crushes
+    strength: Stress  #: overlap: "purely artificial" parameter of the thesis; crushing: strength of the ice [Pa]
     friction: Coefficient  #: sheet against structure
 
 

@@ -28,14 +28,18 @@ SAMPLES = 8  #: points across the width of a node
 
 @dataclass(frozen=True)
 class ContactLaw:
-    """The thesis's contact: a strength that is a parameter of the model, not a property of the ice (6.2)."""
+    """Parameters of the contact of ice and structure."""
 
-    strength: float  #: contact parameter [Pa]
+    strength: float  #: contact parameter of the thesis (6.2), or strength of the ice in crushing [Pa]
     friction: float  #: ice on structure [-]
+    stiffness: float = np.inf  #: pressure per closure of ice that is not crushing, E / d [Pa/m]
 
 
 class OverlapContact:
-    """Contact force on the nodes of the sheet's edge. Displacements are relative to the drifting frame."""
+    """The thesis's contact: the strength presses wherever the ice overlaps the structure.
+
+    Displacements are relative to the drifting frame.
+    """
 
     def __init__(self, structure: Structure, law: ContactLaw, velocity: float, thickness: float, freeboard: float):
         """``velocity`` of the drift [m/s], ``thickness`` and ``freeboard`` of the floating sheet [m]."""
@@ -71,19 +75,59 @@ class OverlapContact:
         on = np.flatnonzero(L.any(axis=1))
         if not len(on):
             return force, tangent
-        L, normal, width = L[on], normal[on], self._width[on, None]
+        L, normal = L[on], normal[on]
         sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
-        full = self._h * cos / sin
-        direction = self._direction(normal, sin)
-        per_overlap = (self._law.strength * width / SAMPLES / cos)[..., None] * direction
-        force[on] = (per_overlap * np.minimum(L, full)[..., None]).sum(axis=1)
-        growing = per_overlap * ((L > 0.0) & (L < full))[..., None]
+        whole = self._h / sin
+        growing = (L > 0.0) & (L < whole * cos)
+        length = np.where(growing, L / np.maximum(cos, 1e-12), np.where(L > 0.0, whole, 0.0))
+        pressure, stiffness = self.pressure(L, on)
+        per_area = (self._width[on, None] / SAMPLES)[..., None] * self._direction(normal, sin)
+        force[on] = (per_area * (pressure * length)[..., None]).sum(axis=1)
+        slope = per_area * (stiffness * length + np.where(growing, pressure / np.maximum(cos, 1e-12), 0.0))[..., None]
         for k in range(3):  # dL/dy and dL/dw are -dx/dy and -dx/dz of the face
-            tangent[on, :, k] = (growing * (normal[..., k] / normal[..., 0])[..., None]).sum(axis=1)
+            tangent[on, :, k] = (slope * (normal[..., k] / normal[..., 0])[..., None]).sum(axis=1)
         return force, tangent
+
+    def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
+        """Pressure [Pa] at overlaps L (k, SAMPLES) of the nodes `rows`, and its derivative to L [Pa/m]."""
+        return np.full(L.shape, self._law.strength), np.zeros(L.shape)
+
+    def settle(self, t: float, y: Array) -> Array:
+        """Called at the end of a window: depth to which the touching edge is crushed, (m, SAMPLES) [m]."""
+        return self.overlap(t, y)[0]
 
     def _direction(self, normal: Array, sin: Array) -> Array:
         """Normal plus friction, (m, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
         up = np.array([0.0, 0.0, 1.0])
         up_slope = (up - normal[..., 2:] * normal) / sin[..., None]
         return normal + self._law.friction * self.face * up_slope
+
+
+class CrushingContact(OverlapContact):
+    """A contact with a physical strength and a damaged edge.
+
+    The pressure grows with the closure L - c of the intact ice behind the crushed depth c, elastically with E / d,
+    to the crushing strength of the ice. Beyond it ice is crushed away and c follows: the edge takes the shape of the
+    structure, as section 6.3.2 of the thesis recommends. An edge that has let go meets the structure again only where
+    it still reaches it. c is settled at the end of each window.
+    """
+
+    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
+        """As `OverlapContact.set_edge`; nodes that stay in front keep their damage."""
+        known = dict(zip(self.nodes.tolist(), self._crushed, strict=True)) if hasattr(self, "_crushed") else {}
+        super().set_edge(nodes, x, y, width)
+        fresh = np.zeros(SAMPLES)
+        self._crushed = np.array([known.get(n, fresh) for n in nodes.tolist()]).reshape(-1, SAMPLES)
+
+    def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
+        elastic = self._law.stiffness * (L - self._crushed[rows])
+        bearing = (elastic > 0.0) & (elastic < self._law.strength)
+        return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
+
+    def settle(self, t: float, y: Array) -> Array:
+        L, _ = self.overlap(t, y)
+        self._crushed = np.maximum(self._crushed, L - self._law.strength / self._law.stiffness)
+        return self._crushed.copy()
+
+
+CONTACTS: dict[str, type[OverlapContact]] = {"overlap": OverlapContact, "crushing": CrushingContact}

@@ -36,9 +36,9 @@ class CrushedEdge:
         self.depth[front != self.front] = 0.0
         self.front = front.copy()
 
-    def crush(self, column: IntArray, overlap: Array) -> None:
-        """Deepens the cut to the present overlap (m, samples), as the depth with the same mean cut area."""
-        depth = np.sqrt(np.mean(overlap**2, axis=1))
+    def crush(self, column: IntArray, depth: Array) -> None:
+        """Deepens the cut to a depth given at points across each column (m, samples), keeping the mean cut area."""
+        depth = np.sqrt(np.mean(depth**2, axis=1))
         self.depth[column] = np.maximum(self.depth[column], depth)
 
     def cut(self, row: IntArray, column: IntArray) -> Array:

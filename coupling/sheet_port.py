@@ -40,10 +40,10 @@ class SheetPort:
     """Lattice, edge contact and crushed edge of one floe that drifts along +x."""
 
     def __init__(self, sheet: Sheet, structure: Structure, law: ContactLaw, velocity: float,
-                 columns_per_section: int = 1):
+                 columns_per_section: int = 1, contact: type[OverlapContact] = OverlapContact):
         g, ice = sheet.grid, sheet.ice
         self.sheet, self.velocity, self.columns_per_section = sheet, velocity, columns_per_section
-        self.contact = OverlapContact(structure, law, velocity, ice.h, ice.freeboard)
+        self.contact = contact(structure, law, velocity, ice.h, ice.freeboard)
         self.z_mid = ice.freeboard - 0.5 * ice.h  #: middle of the floating sheet [m]
         y = np.asarray(g.y0 + np.arange(g.ny) * g.d, np.float64)
         self.ice_y = y.copy()  #: middle of each column's ice [m]
@@ -102,8 +102,7 @@ class SheetPort:
         n = self.contact.nodes
         if not len(n):
             return
-        overlap, _ = self.contact.overlap(self._t, edge_displacement(s, n))
-        self.edge.crush(self.front_column, overlap)
+        self.edge.crush(self.front_column, self.contact.settle(self._t, edge_displacement(s, n)))
         spent = self.edge.spent()
         if len(spent):
             nodes = self.edge.front[spent] * self.sheet.grid.ny + spent

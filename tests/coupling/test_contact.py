@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling.contact import ContactLaw, OverlapContact
+from coupling.contact import ContactLaw, CrushingContact, OverlapContact
 from coupling.structure import cone, plane_slope
 
 P, MU, H = 200e3, 0.1, 3.0
@@ -76,3 +76,37 @@ def test_the_overlap_of_a_wide_node_is_its_mean_over_the_width():
     mean = overlap.mean() * P * np.sqrt(2) * 8.0
     assert -wide[0, 2] == pytest.approx(mean * 0.9 / np.sqrt(2), rel=0.03)
     assert -wide[0, 2] < 0.9 * 0.5 * P * np.sqrt(2) * 8.0 * 0.9 / np.sqrt(2)
+
+
+def crushing(front_overlap_at=0.0):
+    law = CrushingContact(plane_slope(np.pi / 4), ContactLaw(4e6, MU, 3e9), 0.1, H, FREEBOARD)
+    start = float(plane_slope(np.pi / 4).face_x(0.0, FREEBOARD)) + front_overlap_at
+    law.set_edge(np.array([7]), np.array([start]), np.array([0.0]), np.array([2.0]))
+    return law
+
+
+def test_intact_ice_presses_elastically_then_at_its_strength():
+    law = crushing()
+    elastic, _ = law.evaluate(0.01, np.zeros((1, 3)))  # L = 1 mm, below 4 MPa / (3e9 Pa/m)
+    assert -elastic[0, 0] == pytest.approx(3e9 * 1e-3 * 1e-3 * np.sqrt(2) * 2.0 * 1.1 / np.sqrt(2), rel=1e-9)
+    crushed, _ = law.evaluate(5.0, np.zeros((1, 3)))
+    assert -crushed[0, 0] == pytest.approx(4e6 * 0.5 * np.sqrt(2) * 2.0 * 1.1 / np.sqrt(2), rel=1e-12)
+
+
+def test_crushed_ice_does_not_come_back():
+    """After crushing half a metre the edge lets go when the ice moves back by the elastic closure, and stays apart."""
+    law = crushing()
+    depth = law.settle(5.0, np.zeros((1, 3)))
+    np.testing.assert_allclose(depth, 0.5 - 4e6 / 3e9)
+    back = np.array([[-2e-3, 0.0, 0.0]])
+    assert not law.evaluate(5.0, back)[0].any()
+    assert contact(plane_slope(np.pi / 4)).evaluate(5.0, back)[0].any()  # the thesis's contact presses on
+
+
+def test_nodes_that_stay_in_front_keep_their_damage():
+    law = crushing()
+    law.settle(5.0, np.zeros((1, 3)))
+    law.set_edge(np.array([3, 7]), np.array([-1.0, 0.0]), np.array([2.0, 0.0]), np.array([2.0, 2.0]))
+    depth = law.settle(0.0, np.zeros((2, 3)))
+    assert depth[1].min() > 0.4
+    assert depth[0].max() < 1e-9 or depth[0].max() < depth[1].min()

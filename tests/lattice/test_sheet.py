@@ -1,0 +1,82 @@
+"""Failures within a window: located in time, ordered, with an energy balance that closes; long steps change nothing."""
+
+import numpy as np
+import pytest
+
+from lattice.engine import NoContact
+from lattice.grid import Grid
+from lattice.ice import Ice
+from lattice.sheet import Sheet
+from lattice.stiffness import hrennikoff
+
+GRID = Grid(13, 12, 2.0)
+ICE = Ice(E=8.7e9, nu=1 / 3, h=1.0, rho_i=846.0, rho_w=1006.0, sigma_t=750e3, sigma_f=750e3, sigma_c=4e6)
+
+
+class Spring:
+    """A stiff spring that takes the edge down, slowly at first: w is driven to -rate t^2, whatever breaks."""
+
+    def __init__(self, nodes, rate=0.006, k=2e7):
+        self.nodes, self.rate, self.k = np.asarray(nodes), rate, k
+
+    def evaluate(self, t, y):
+        force, tangent = np.zeros((len(y), 3)), np.zeros((len(y), 3, 3))
+        force[:, 2] = self.k * (-self.rate * t**2 - y[:, 2])
+        tangent[:, 2, 2] = -self.k
+        return force, tangent
+
+
+def pressed_down(seconds, *, dt=0.05, long_step=1, alpha=0.0, rate=0.006):
+    """A floe held at its back, pressed down at the middle of its front; returns sheet, outcomes, times."""
+    held = np.zeros(GRID.nodes, bool)
+    held[GRID.edge_nodes("x-")] = True
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), dt, held=held, damping=500.0, alpha=alpha, long_step=long_step)
+    contact = Spring(GRID.edge_nodes("x+")[5:7], rate)
+    outcomes = []
+
+    def release(nodes):
+        contact.nodes = np.setdiff1d(contact.nodes, nodes)
+
+    for k in range(round(seconds / dt)):
+        zero = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
+        outcomes.append(sheet.advance(k * dt, *zero, contact, release))
+    return sheet, outcomes
+
+
+def first_failure(outcomes):
+    return next(o.failure[0] for o in outcomes if o.failure)
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1e-3])
+@pytest.mark.parametrize("long_step", [1, 4])
+def test_energy_closes_through_failures(alpha, long_step):
+    """Work = stored + damping + scheme + fracture + handed over, to rounding (long steps: to their interpolation)."""
+    sheet, outcomes = pressed_down(8.0, alpha=alpha, long_step=long_step)
+    assert sum(len(o.failed) for o in outcomes) >= 3
+    e = sheet.energy
+    assert e.fracture > 0.0
+    assert e.damping > 0.0
+    assert abs(e.residual) < (1e-9 if long_step == 1 else 1e-3) * e.contact
+    assert abs(e.residual - 2.0 * e.fracture) > 1e-3 * e.contact  # the wrong sign of a term is noticed
+
+
+def test_a_failure_time_does_not_depend_on_the_window():
+    times = [first_failure(pressed_down(6.0, dt=dt)[1]) for dt in (0.1, 0.05, 0.025)]
+    assert times[0] == pytest.approx(times[2], rel=1e-3)
+    assert times[1] == pytest.approx(times[2], rel=5e-4)
+
+
+def test_long_steps_find_the_same_failure():
+    short, long = pressed_down(6.0), pressed_down(6.0, long_step=8)
+    assert first_failure(long[1]) == pytest.approx(first_failure(short[1]), rel=1e-3)
+    assert long[1][20].contact_end == pytest.approx(short[1][20].contact_end, rel=1e-2)
+
+
+def test_a_rotating_floe_does_not_fail_by_rotating():
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=np.zeros(GRID.nodes, bool))
+    turn = 0.05
+    x = GRID.xy - GRID.xy.mean(axis=0)
+    sheet.state.u[:] = np.column_stack((-turn * x[:, 1], turn * x[:, 0]))
+    out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
+    assert not out.failed
+    assert sheet.utilisation.max() < 1e-3
