@@ -114,10 +114,13 @@ class CrushingContact(OverlapContact):
 
     def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
         """As `OverlapContact.set_edge`; nodes that stay in front keep their damage."""
-        known = dict(zip(self.nodes.tolist(), self._crushed, strict=True)) if hasattr(self, "_crushed") else {}
+        known: dict[int, Array] = getattr(self, "_known", {})
         super().set_edge(nodes, x, y, width)
-        fresh = np.zeros(SAMPLES)
-        self._crushed = np.array([known.get(n, fresh) for n in nodes.tolist()]).reshape(-1, SAMPLES)
+        self._keep(np.array([known.get(n, np.zeros(SAMPLES)) for n in nodes.tolist()]).reshape(-1, SAMPLES))
+
+    def _keep(self, crushed: Array) -> None:
+        self._crushed: Array = crushed
+        self._known = dict(zip(self.nodes.tolist(), crushed, strict=True))
 
     def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
         elastic = self._law.stiffness * (L - self._crushed[rows])
@@ -126,7 +129,7 @@ class CrushingContact(OverlapContact):
 
     def settle(self, t: float, y: Array) -> Array:
         L, _ = self.overlap(t, y)
-        self._crushed = np.maximum(self._crushed, L - self._law.strength / self._law.stiffness)
+        self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness))
         return self._crushed.copy()
 
 

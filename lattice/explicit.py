@@ -69,8 +69,8 @@ class ExplicitEngine(Engine):
 
     def _critical_step(self) -> float:
         K_u, K_q = assemble(self.grid, self.rows_u).tocsr(), assemble(self.grid, self.rows_q).tocsr()
-        out = critical_step((K_q + sp.diags(self.k_f)).tocsr(), (self.alpha * K_q + sp.diags(self.C_q)).tocsr(), self.M_q)
-        return min(critical_step(K_u, self.alpha * K_u, self.M_u), out)
+        floating, damped = K_q + sp.diags(self.k_f), self.alpha * K_q + sp.diags(self.C_q)
+        return min(critical_step(K_u, self.alpha * K_u, self.M_u), critical_step(floating, damped, self.M_q))
 
     def _allocate(self, s: Springs) -> None:
         """Arrays of `lattice.kernels`."""
@@ -90,7 +90,7 @@ class ExplicitEngine(Engine):
         per_mass = dt / (ice.rho_i * ice.h)
         self._pace = np.array([self.alpha, dt + self.alpha, per_mass * ice.k_f,
                                per_mass * (self.damping - self.alpha * ice.k_f)])
-        F_1, self._F_2 = mohr_factors(ice.nu, ice.sigma_c / ice.sigma_t)
+        F_1, self._F_2 = mohr_factors(ice.nu, np.inf if np.isinf(ice.sigma_t) else ice.sigma_c / ice.sigma_t)
         ratio = 1.0 if ice.sigma_t == ice.sigma_f else ice.sigma_t / ice.sigma_f
         self._crack = np.array([F_1, 0.5 * ice.h * ratio])
         self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))

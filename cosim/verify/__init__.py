@@ -20,6 +20,7 @@ from cosim.verify import (
     frequency_response,
     froude,
     l_beam,
+    mohr_plane,
     momentum,
     pile,
     poisson,
@@ -54,6 +55,7 @@ CASES: dict[str, ModuleType] = {
     "momentum": momentum,
     "pile": pile,
     "pusher": pusher,
+    "mohr-plane": mohr_plane,
 }
 
 

@@ -130,7 +130,8 @@ def line(case: str, engine: str, out: Run) -> None:
         print(f"{case:16}{engine:22}no failure; {out.wall:.0f} s")
         return
     k, R = crack(out), rayleigh_speed(out.sheet.ice)
-    print(f"{case:16}{engine:22}{out.cells[0][0]:7.3f} s{out.load[0] / 1e6:6.2f}/{out.load[1] / 1e6:.2f}{k['cells']:6.0f}"
+    fx, fz = out.load[0] / 1e6, out.load[1] / 1e6
+    print(f"{case:16}{engine:22}{out.cells[0][0]:7.3f} s{fx:6.2f}/{fz:.2f}{k['cells']:6.0f}"
           f"{k['length']:8.1f},{k['width']:5.1f}{k['speed']:7.0f} m/s{k['fastest'] / R:6.2f}"
           f"{out.kinetic / out.stored:9.3f}{len(out.cells):7d}{out.sheet.parts:7d}{out.wall:6.0f} s", flush=True)
     for event in out.events:

@@ -26,9 +26,11 @@ SECTIONS, BLOCKS, WIDTH, SIZE = 15, 500, 5.6, (4.0, 2.0)
 PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=SIZE[1], mu_ice_ice=0.1, mu_structure=0.1,
                         restitution=0.1, added_mass=0.2, added_inertia=0.2, contact_strength=4e6)
 WINDOW = 10  #: sub-steps, the default coupling window of 50 ms
-#: an upturned bin with sloping sides: blocks pile up under it as between sheet and structure
-BIN = [np.array([(-14.0, -12.0), (-2.0, -4.0), (-14.0, -2.0)]), np.array([(14.0, -12.0), (14.0, -2.0), (2.0, -4.0)]),
-       np.array([(-14.0, -4.0), (14.0, -4.0), (14.0, -2.0), (-14.0, -2.0)])]
+#: an upturned bin with a sloping side: blocks pile up in it as between sheet and structure
+BIN = [np.array([(-14.0, -4.0), (14.0, -4.0), (14.0, -2.0), (-14.0, -2.0)]),
+       np.array([(2.0, -4.0), (12.0, -14.0), (12.0, -4.0)]),
+       np.array([(-14.0, -150.0), (-10.0, -150.0), (-10.0, -2.0), (-14.0, -2.0)]),
+       np.array([(10.0, -150.0), (14.0, -150.0), (14.0, -2.0), (10.0, -2.0)])]
 
 
 def outlines(section: int) -> list[tuple[np.ndarray, float]]:

@@ -61,13 +61,13 @@ def test_energy_closes_through_failures(alpha, long_step):
 
 
 def test_a_failure_time_does_not_depend_on_the_window():
-    times = [first_failure(pressed_down(6.0, dt=dt)[1]) for dt in (0.1, 0.05, 0.025)]
+    times = [first_failure(pressed_down(7.0, dt=dt)[1]) for dt in (0.1, 0.05, 0.025)]
     assert times[0] == pytest.approx(times[2], rel=1e-3)
     assert times[1] == pytest.approx(times[2], rel=5e-4)
 
 
 def test_long_steps_find_the_same_failure():
-    short, long = pressed_down(6.0), pressed_down(6.0, long_step=8)
+    short, long = pressed_down(7.0), pressed_down(7.0, long_step=8)
     assert first_failure(long[1]) == pytest.approx(first_failure(short[1]), rel=1e-3)
     assert long[1][20].contact_end == pytest.approx(short[1][20].contact_end, rel=1e-2)
 
