@@ -69,7 +69,7 @@ def test_a_failure_time_does_not_depend_on_the_window():
 def test_long_steps_find_the_same_failure():
     short, long = pressed_down(7.0), pressed_down(7.0, long_step=8)
     assert first_failure(long[1]) == pytest.approx(first_failure(short[1]), rel=1e-3)
-    assert long[1][20].contact_end == pytest.approx(short[1][20].contact_end, rel=1e-2)
+    assert long[1][100].contact_end[:, 2] == pytest.approx(short[1][100].contact_end[:, 2], rel=1e-2)
 
 
 def test_a_rotating_floe_does_not_fail_by_rotating():
