@@ -1,0 +1,127 @@
+"""What the case `mohr-plane` keeps of a run: circles of all cells, and the states in which cells fail."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coupling.interface import NS, Event
+from lattice.criteria import cell_strains, mohr, tensile_limits, tensile_utilisation
+from lattice.engine import EdgeContact, State, Step
+from lattice.grid import Array
+from lattice.ice import Ice
+from lattice.limits import shear_fault
+from lattice.sheet import Sheet
+
+EVERY = 10  #: windows between two snapshots for the figure
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A cell that fails: its circles (4,) as `criteria.mohr` [-] and its tensile limit then [Pa]."""
+
+    circle: Array
+    limit: float
+    located: bool  #: the first of its window; the others follow at the same instant
+
+
+class Witness(Sheet):
+    """A sheet that keeps the state in which each cell fails, which is the last one judged before."""
+
+    failures: list[Failure]
+    _judged: State
+    _located: bool
+
+    @classmethod
+    def of(cls, sheet: Sheet) -> Witness:
+        """The same sheet, its arrays shared."""
+        new = cls.__new__(cls)
+        vars(new).update(vars(sheet))
+        new.failures, new._judged, new._located = [], sheet.state, False
+        return new
+
+    def circles(self, state: State) -> Array:
+        """Mean and radius of all cells at the top and at the bottom, (cells, 4) [-]."""
+        strains = cell_strains(self.grid.cell_nodes, self.grid.d, state.u, state.q)
+        return np.asarray(mohr(strains, 0.5 * self.ice.h * self.ice.sigma_t / self.ice.sigma_f))
+
+    def limits(self) -> Array:
+        """Tensile limit of all cells, (cells,) [Pa]."""
+        return tensile_limits(self.grid, self.live_cells, self.ice)
+
+    def _utilisation(self, state: State) -> Array:
+        self._judged = state
+        return super()._utilisation(state)
+
+    def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
+        found = super()._locate(t, step, contact)
+        self._located = True
+        return found
+
+    def _fail(self, cell: int) -> None:
+        failure = Failure(self.circles(self._judged)[cell], float(self.limits()[cell]), self._located)
+        self.failures.append(failure)
+        self._located = False
+        super()._fail(cell)
+
+
+class Record:
+    """Running extremes and shares over all windows, and snapshots for the figure."""
+
+    def __init__(self, ice: Ice):
+        self.ice = ice
+        self.inside = self.inside_tip = self.compression = 0.0  #: largest utilisation of live cells [-]
+        self.snapshots: list[Array] = []  #: circles of live cells, (live, 4) [-]
+        self.failures: list[Failure] = []
+        self.force, self.time = np.zeros(3), 0.0  #: at the failure that ends the record [N], [s]
+        self._count, self._windows = np.zeros(3), 0
+
+    def see(self, sheet: Witness) -> None:
+        """Takes in the end of a window."""
+        live = sheet.live_cells
+        circle, limit = sheet.circles(sheet.state)[live], sheet.limits()[live]
+        use, tip = self.utilisation(circle, limit), limit != self.ice.sigma_t
+        self.inside = max(self.inside, float(use[~tip].max(initial=0.0)))
+        self.inside_tip = max(self.inside_tip, float(use[tip].max(initial=0.0)))
+        self.compression = max(self.compression, float(self._shear(circle).max()))
+        self._count += self.quadrants(circle)
+        self._windows += 1
+        if self._windows % EVERY == 0:
+            self.snapshots.append(circle)
+        self.failures = sheet.failures
+
+    def close(self, event: Event) -> None:
+        """The failure at which the record ends."""
+        self.force, self.time = np.array(event.force), event.t_ns / NS
+
+    def utilisation(self, circle: Array, limit: Array | float) -> Array:
+        """(4.6) at the worse face."""
+        top, bottom = (tensile_utilisation(circle[:, k], circle[:, k + 1], limit, self.ice) for k in (0, 2))
+        return np.maximum(top, bottom)
+
+    def _shear(self, circle: Array) -> Array:
+        """(4.5) at the worse face."""
+        return np.maximum(*(shear_fault(circle[:, k], circle[:, k + 1], self.ice) for k in (0, 2)))
+
+    def quadrants(self, circle: Array) -> Array:
+        """States in T-T, T-C and C-C, both faces counted, (3,)."""
+        mean, radius = np.concatenate((circle[:, :2], circle[:, 2:])).T
+        axis = mean * (1.0 + self.ice.nu) / (1.0 - self.ice.nu)  # R at which one principal stress is zero
+        return np.array([(axis >= radius).sum(), (np.abs(axis) < radius).sum(), (-axis >= radius).sum()], float)
+
+    @property
+    def share(self) -> Array:
+        """Share of all states, cells and windows, in T-T, T-C and C-C, (3,)."""
+        return self._count / self._count.sum()
+
+    def failing(self, located: bool) -> Array:
+        """Utilisation of the failing cells against their own limits."""
+        chosen = [f for f in self.failures if f.located == located]
+        return np.array([float(self.utilisation(f.circle[None], f.limit)[0]) for f in chosen])
+
+    def failing_circles(self, located: bool) -> Array:
+        """Mean and radius times E of failing cells at their worse face, (k, 2) [Pa]."""
+        faces = [f.circle.reshape(2, 2) for f in self.failures if f.located == located]
+        use = [tensile_utilisation(c[:, 0], c[:, 1], self.ice.sigma_t, self.ice) for c in faces]
+        return np.array([c[np.argmax(u)] for c, u in zip(faces, use, strict=True)]).reshape(-1, 2) * self.ice.E
