@@ -57,9 +57,9 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
     s = scenario.sheet
     front = float(structure.face_x(0.0, ice.freeboard))
     grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
-    held = np.zeros(grid.nodes, bool)
-    if s.back == "held":
-        held[grid.edge_nodes("x-")] = True
+    held = np.zeros((grid.nodes, 2), bool)
+    if s.back != "free":
+        held[grid.edge_nodes("x-")] = (True, s.back == "held")
     if s.sides == "held":
         held[grid.edge_nodes("y-")] = held[grid.edge_nodes("y+")] = True
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)

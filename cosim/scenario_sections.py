@@ -92,7 +92,7 @@ class Sheet(Section):
     width: Length  #: along y [m]
     nodes: NodeCounts  #: along x and y
     axis_from_side: LengthOrZero = None  #: structure's axis from the side edge y_min [m]; default half the width
-    back: Literal["held", "free"]
+    back: Literal["held", "roller", "free"]  #: in plane; a roller holds the ice along the drift, not across
     sides: Literal["held", "free"] = "free"
 
     @property

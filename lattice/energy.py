@@ -106,7 +106,8 @@ class EnergyBooks:
     def loss_rate(self, s: State, live: np.ndarray, present: np.ndarray) -> float:
         """Power taken by damping in a state [W]."""
         water = float((self.engine.C_q.reshape(-1, 3) * s.q_dot**2)[present].sum())
-        return water + 2.0 * self.engine.alpha * self.springs(s.u_dot, s.q_dot, live)
+        alpha = self.engine.alpha
+        return water + 2.0 * alpha * self.springs(s.u_dot, s.q_dot, live) if alpha else water
 
     def book_failure(self, cell: int, s: State) -> None:
         """Books the elastic energy of a cell that fails in state s."""

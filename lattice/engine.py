@@ -141,14 +141,17 @@ class Engine:
 
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, *, held_in_plane: np.ndarray, damping: float = 0.0,
                  alpha: float = 0.0):
-        """``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27)."""
+        """``held_in_plane`` (nodes,) nodes held in x and y, or (nodes, 2) each direction on its own.
+
+        ``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27).
+        """
         self.grid, self.ice, self.alpha = grid, ice, alpha
         self.M_u, self.M_q = in_plane_mass(grid, ice), out_of_plane_mass(grid, ice)
         self.C_q, self.k_f = foundation(grid, damping), foundation(grid, ice.k_f)
         self.rows_u, self.rows_q = in_plane_springs(springs), out_of_plane_springs(springs, grid.d)
         self.K_cell_u, self.K_cell_q = self.rows_u.T @ self.rows_u, self.rows_q.T @ self.rows_q
         self.dof_u, self.dof_q = cell_dof(grid, 2), cell_dof(grid, 3)
-        self._held = np.repeat(held_in_plane, 2)
+        self._held = np.broadcast_to(held_in_plane.reshape(grid.nodes, -1), (grid.nodes, 2)).ravel()
         self._intact = np.ones(grid.cells, bool)
         self._systems: dict[float, tuple[CrackedSystem, CrackedSystem]] = {}
 

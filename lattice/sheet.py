@@ -51,6 +51,7 @@ class LongStep:
     contact: Array = field(default_factory=lambda: np.empty((0, 3)))  #: force at the last window's end
     work: float = 0.0  #: of the contact in the windows served, by the trapezoidal rule [J]
     damping: float = 0.0  #: loss in them, likewise [J]
+    power: float = 0.0  #: loss at the last window's end [W]
 
 
 class Sheet:
@@ -58,12 +59,13 @@ class Sheet:
 
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
                  alpha: float = 0.0, share: float = 0.2, long_step: int = 1):
-        """``held`` (nodes,) nodes that cannot move in plane; ``damping``, ``alpha`` as in `Engine`.
+        """``held``, ``damping``, ``alpha`` as in `Engine`; a piece with a held node is not loose.
 
         A free piece with less than ``share`` of the floe's area leaves the lattice (see `fragments.loose_pieces`).
         ``long_step`` is the largest number of windows in one step.
         """
-        self.grid, self.ice, self.held, self.share, self.dt = grid, ice, held, share, dt
+        self.grid, self.ice, self.share, self.dt = grid, ice, share, dt
+        self.held = held.reshape(grid.nodes, -1).any(axis=1)  #: nodes held in some direction, (nodes,)
         self.intact = np.ones(grid.cells, bool)
         self.present = np.ones(grid.nodes, bool)
         self.state = State.rest(grid.nodes)
@@ -117,8 +119,9 @@ class Sheet:
         """Work and loss of a served window, for the case that the step is given up later."""
         way = edge_displacement(state, nodes) - edge_displacement(self.state, nodes)
         plan.work += float((force * way).sum())
-        rate = [self.energy.loss_rate(s, self.live_cells, self.present) for s in (self.state, state)]
-        plan.damping += 0.5 * self.dt * sum(rate)
+        power = self.energy.loss_rate(state, self.live_cells, self.present)
+        plan.damping += 0.5 * self.dt * (plan.power + power)
+        plan.power = power
 
     def _take_long_step(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact) -> bool:
         if self._wait > 0 or self._longest == 1:
@@ -129,7 +132,8 @@ class Sheet:
             self._wait, self._windows = self._windows, max(self._windows // 2, 2)
             return False
         start = contact.evaluate(t, edge_displacement(self.state, contact.nodes))[0]
-        self._long = LongStep(step, self._windows, contact=start)
+        power = self.energy.loss_rate(self.state, self.live_cells, self.present)
+        self._long = LongStep(step, self._windows, contact=start, power=power)
         self._windows = min(2 * self._windows, self._longest)
         return True
 
