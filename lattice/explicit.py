@@ -48,6 +48,8 @@ class Marched:
     steps: int
     failed: bool  #: a cell is overloaded at the end of the last one
     contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
+    contact_work: float  #: [J]
+    work: float  #: of the other forces [J]
     loss: float  #: taken by hydrodynamic and material damping [J]
 
 
@@ -65,6 +67,7 @@ class ExplicitEngine(Engine):
         self.window, self.damping = window, damping
         self.sub_steps = math.ceil(window / (step or SHARE_OF_CRITICAL * self.critical))
         self.dt = window / self.sub_steps
+        self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
         self._allocate(springs)
 
     def _critical_step(self) -> float:
@@ -119,7 +122,10 @@ class ExplicitEngine(Engine):
 
     def state(self, old: State, present: np.ndarray, forces: tuple[NodeForces, ...]) -> State:
         """The state now under these forces; nodes that have left keep theirs."""
-        v = 0.5 * (self.v + self._next_velocity(self.y.copy(), self.v, forces))
+        after = self._next_velocity(self.y.copy(), self.v, forces)
+        v, jump = 0.5 * (self.v + after), self._get(after - self.v)
+        self.ripple = 0.125 * float((self.M_u * jump[:, :2].ravel() ** 2).sum()
+                                    + (self.M_q * jump[:, 2:].ravel() ** 2).sum())
         x, x_dot, on = self._get(self.y - self.alpha * self.v), self._get(v), present[:, None]
         return State(np.where(on, x[:, :2], old.u), np.where(on, x[:, 2:], old.q),
                      np.where(on, x_dot[:, :2], old.u_dot), np.where(on, x_dot[:, 2:], old.q_dot))
@@ -168,12 +174,13 @@ class ExplicitEngine(Engine):
     def march(self, steps: int, load: NodeForces, contact: NodeForces, lively: bool) -> Marched:
         """Up to ``steps`` sub-steps, to the first failure; damping is taken stock of in each or in the first only."""
         m = len(contact.row)
-        total = np.zeros((m, 3))
-        made, count, loss = march(steps, 1 if lively else steps, self.y, self.v, self._scratch, self._cells,
-                                  self._kick, self._limit, self._spring, self._pace, self._crack, self._rows,
-                                  load.row, load.column, load.force, contact.row, contact.column, contact.at,
-                                  contact.force, contact.tangent, np.zeros((m, 5)), total)
-        return Marched(made, count > 0, total / made, loss * self.dt * (1 if lively else made))
+        total, books = np.zeros((m, 3)), np.zeros(3)
+        made, count = march(steps, 1 if lively else steps, self.y, self.v, self._scratch, self._cells, self._kick,
+                            self._limit, self._spring, self._pace, self._crack, self._rows, load.row, load.column,
+                            load.force, contact.row, contact.column, contact.at, contact.force, contact.tangent,
+                            np.zeros((m, 5)), total, books)
+        contact_work, work, loss = self.dt * books
+        return Marched(made, count > 0, total / made, contact_work, work, loss * (1 if lively else made))
 
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
         """As in `Engine`, for motions of the length of a window."""

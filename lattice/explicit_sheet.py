@@ -3,6 +3,11 @@
 A cell fails in the sub-step in which its utilisation reaches 1, the time of which is interpolated. Nothing is solved
 again: what the cell carried goes out as waves, and the next cell fails when they have loaded it. Loose pieces leave
 in the same sub-step.
+
+The limit beside a crack tip (4.31) belongs to the concentrated strain of a cell that the tip has loaded. When a cell
+breaks, its neighbours on the flanks still carry the strain from before, which may exceed (4.31) until they have
+unloaded: a few wave passages, and never less than alpha. Such a cell fails only if its load *rises*; as it falls, its
+limit comes down with it to (4.31). Without that, both flanks of the first cell of every crack break off.
 """
 
 from __future__ import annotations
@@ -11,6 +16,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from lattice.criteria import cell_strains, combined_utilisation
 from lattice.engine import EdgeContact, State
 from lattice.explicit import ExplicitEngine, Marched, NodeForces
 from lattice.grid import Array, Grid, IntArray
@@ -19,6 +25,7 @@ from lattice.sheet import Outcome, Sheet, edge_displacement
 from lattice.stiffness import Springs
 
 CONTACT_TIME = 1e-3  #: longest time between two evaluations of the contact law, linear in between [s]
+RISE = 1e-3  #: share by which a cell beside a new crack tip must be loaded further to fail
 LIVELY = 1e-6  #: loss in such a time, as share of the stored energy, from which on damping is booked every sub-step
 
 
@@ -35,6 +42,8 @@ class ExplicitSheet(Sheet):
         self.energy.engine = self.engine
         self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
         self._lively = True
+        self._eased = np.zeros(grid.cells)  #: limit of cells that a crack tip has just reached, else 0 [Pa]
+        self._unconcentrated = np.full(grid.cells, ice.sigma_t)  #: limits before the last failure [Pa]
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
         self.failed_cells: list[int] = []  #: which they were
 
@@ -53,6 +62,8 @@ class ExplicitSheet(Sheet):
             done += marched.steps
             if marched.failed:
                 self._break(t, done, (load,), contact, out, release)
+            elif self._eased.any():
+                self._ease()
         self._end(t + self.dt, self._loads(force_u, force_q), contact, out)
         self._means(out, impulse / self.dt, contact.nodes)
         return out
@@ -65,19 +76,19 @@ class ExplicitSheet(Sheet):
         e = self.engine
         e.set_cells(self.live_cells, self._limits(), self.present)
         touch = e.contact_at(t, contact, edge_displacement(self.state, contact.nodes))
-        e.start(self.state, self.present, (self._loads(force_u, force_q), touch))
+        load = self._loads(force_u, force_q)
+        e.start(self.state, self.present, (load, touch))
+        self._book_half(-0.5, load, touch)
 
     def _march(self, t: float, done: int, load: NodeForces, contact: EdgeContact, impulse: Array) -> Marched:
         """Sub-steps to the next evaluation of the contact, or to a failure."""
         e = self.engine
         steps = min(self.block, e.sub_steps - done)
         patch = e.contact(t + (done + 0.5 * steps) * e.dt, contact)
-        loaded = load.row * self.grid.ny + load.column
-        before = e.at(contact.nodes), e.at(loaded)
         out = e.march(steps, load, patch, self._lively)
         impulse[contact.nodes] += out.steps * e.dt * out.contact
-        self.energy.contact += float((out.contact * (e.at(contact.nodes) - before[0])[:, :3]).sum())
-        self.energy.rubble += float((load.force * (e.at(loaded) - before[1])).sum())
+        self.energy.contact += out.contact_work
+        self.energy.rubble += out.work
         self.energy.damping += out.loss
         self._lively = out.failed or out.loss * self.block > LIVELY * self.energy.stored * out.steps
         return out
@@ -92,16 +103,31 @@ class ExplicitSheet(Sheet):
         if not len(cells):
             return
         patch = e.contact(now, contact)
-        self.state = e.state(self.state, self.present, (*loads, patch))
+        self.state, half = e.state(self.state, self.present, (*loads, patch)), self._at(0.5)
         if out.failure is None:
             out.failure = (now - (1.0 - share[0]) * e.dt, patch.force)
         for cell, s in zip(cells, share, strict=True):
-            self._fail(int(cell))
+            self.energy.book_failure(int(cell), half)  # with x(n) . K x(n-1) / 2, what leapfrog loses
+            self.intact[cell] = False
             out.failed.append(int(cell))
             self.failed_cells.append(int(cell))
             self.failure_times.append(now - (1.0 - s) * e.dt)
+        e.remove(cells)
         self._release_loose(out, release)
-        e.set_cells(self.live_cells, self._limits(), self.present)
+        self._ease()
+
+    def _ease(self) -> None:
+        """Keeps cells that have come to lie beside a crack tip from failing under what they carried before."""
+        u, q = self.engine.displacement()
+        strains = cell_strains(self.grid.cell_nodes, self.grid.d, u, q)
+        stress, limit = combined_utilisation(strains, 1.0, self.ice), super()._limits()
+        eased = np.where(limit < self._unconcentrated, np.inf, self._eased)
+        self._eased = np.where((eased > 0.0) & (stress > limit), np.minimum(eased, (1.0 + RISE) * stress), 0.0)
+        self._unconcentrated = limit
+        self.engine.set_cells(self.live_cells, self._limits(), self.present)
+
+    def _limits(self) -> Array:
+        return np.maximum(super()._limits(), self._eased)
 
     def _overloaded(self) -> tuple[IntArray, Array]:
         """Cells at or past their limit, and the share of the last sub-step at which each reached it."""
@@ -121,10 +147,19 @@ class ExplicitSheet(Sheet):
     def _end(self, t: float, load: NodeForces, contact: EdgeContact, out: Outcome) -> None:
         patch = self.engine.contact(t, contact)
         self.state = self.engine.state(self.state, self.present, (load, patch))
+        self._book_half(0.5, load, patch)
         self.utilisation = self._utilisation(self.state)
         self.energy.measure(self.state, self.live_cells, self.present)
+        self.energy.scheme = -self.engine.ripple
         out.contact_end, out.parts = patch.force, self.parts
 
     def _means(self, out: Outcome, mean: Array, nodes: IntArray) -> None:
         left = np.setdiff1d(np.flatnonzero(mean.any(axis=1)), nodes)
         out.contact_mean = mean[np.concatenate((nodes, left))]
+
+    def _book_half(self, share: float, load: NodeForces, patch: NodeForces) -> None:
+        """Work in the half sub-step by which the velocities of the march lie before the ends of a window."""
+        v = np.hstack((self.state.u_dot, self.state.q_dot))
+        for f, name in ((patch, "contact"), (load, "rubble")):
+            done = share * self.engine.dt * float((f.padded() * v[f.row * self.grid.ny + f.column]).sum())
+            setattr(self.energy, name, getattr(self.energy, name) + done)

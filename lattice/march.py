@@ -43,32 +43,47 @@ def dissipated(v, before, after, kick):
     return work
 
 
-MARCH = (f"Tuple((int64, int64, float64))(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A2}, {A1}, "
-         f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A2}, {A2}, {A3}, {A2}, {A2})")
+@njit(f"float64({I1}, {I1}, {A2}, {A3})", cache=True, nogil=True)
+def power(row, column, force, v):
+    """Of forces (k, 5) on single nodes [W]."""
+    total = 0.0
+    for k in range(len(row)):
+        for c in range(5):
+            total += force[k, c] * v[c, row[k], column[k]]
+    return total
+
+
+MARCH = (f"UniTuple(int64, 2)(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A2}, {A1}, "
+         f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A2}, {A2}, {A3}, {A2}, {A2}, {A1})")
 
 
 @njit(MARCH, cache=True, nogil=True)
 def march(steps, stride, y, v, scratch, intact, kick, limit, spring, pace, crack, rows, row, column, force,
-          touch_row, touch_column, at, touch, tangent, now, total):
+          touch_row, touch_column, at, touch, tangent, now, total, books):
     """Up to ``steps`` sub-steps; stops after the first one at whose end a cell is overloaded.
 
     ``force`` (k, 5) on the nodes (row, column) is constant; the contact is linear about ``at`` (m, 3) with the force
     ``touch`` (m, 3) and its ``tangent`` (m, 3, 3). Its forces, sub-step by sub-step, are added up in ``total`` (m, 3).
-    Returns the sub-steps made, the number of overloaded faces, and dt times the work that damping took in every
-    ``stride``-th sub-step, which costs as much as a sub-step. ``scratch`` (3, 5, n_x+1, n_y+1) is for that.
+    Returns the sub-steps made and the number of overloaded faces. ``books`` (3,) takes the sums over the sub-steps of
+    the power of the contact and of the forces [W], and of dt times the work of damping [J s] in every ``stride``-th
+    one (which costs as much as a sub-step; ``scratch`` (3, 5, n_x+1, n_y+1) is for that), all exact for leapfrog.
     """
-    alpha, go, loss = pace[0], pace[1], 0.0
+    alpha, go = pace[0], pace[1]
     for step in range(steps):
         contact_force(touch_row, touch_column, at, touch, tangent, now, y, v, alpha)
         total += now[:, :3]
         if step % stride == 0:
             damped(v, scratch[0], scratch[1], scratch[2], intact, kick, spring, pace, rows)
+        books[0] += 0.5 * power(touch_row, touch_column, now, v)
+        books[1] += 0.5 * power(row, column, force, v)
         sweep(y, v, intact, kick, spring, pace, rows)
         push(row, column, force, y, v, kick, go)
         push(touch_row, touch_column, now, y, v, kick, go)
+        books[0] += 0.5 * power(touch_row, touch_column, now, v)
+        books[1] += 0.5 * power(row, column, force, v)
         if step % stride == 0:
-            loss += dissipated(v, scratch[0], scratch[2], kick)
+            books[2] += dissipated(v, scratch[0], scratch[2], kick)
         count = overloaded(y, v, limit, crack, alpha)
         if count > 0:
-            return step + 1, count, loss
-    return steps, 0, loss
+            return step + 1, count
+    return steps, 0
