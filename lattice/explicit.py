@@ -7,7 +7,6 @@ frequency, damping included; failed cells only lower that frequency, since their
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
@@ -18,39 +17,11 @@ from lattice.engine import EdgeContact, Engine, State
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.kernels import LANES, LINE, LINES, push, sweep
-from lattice.march import march
+from lattice.march import Marched, NodeForces, march
 from lattice.stepper import critical_step
 from lattice.stiffness import Springs
 
 SHARE_OF_CRITICAL = 0.9  #: longest sub-step
-NOTHING = np.empty(0, np.int64)
-
-
-@dataclass
-class NodeForces:
-    """Forces on single nodes: constant (k, 5), or linear in the displacement where ``tangent`` is used."""
-
-    row: IntArray  #: (k,)
-    column: IntArray  #: (k,)
-    force: Array  #: (k, 5) or, for a contact, (k, 3) [N], [N m]
-    at: Array = field(default_factory=lambda: np.empty((0, 3)))  #: (k, 3) displacement that has this force [m]
-    tangent: Array = field(default_factory=lambda: np.empty((0, 3, 3)))  #: (k, 3, 3) [N/m]
-
-    def padded(self) -> Array:
-        """Forces on all five degrees of freedom, (k, 5)."""
-        return np.ascontiguousarray(np.pad(self.force, ((0, 0), (0, 5 - self.force.shape[1]))))
-
-
-@dataclass(frozen=True)
-class Marched:
-    """Some sub-steps."""
-
-    steps: int
-    failed: bool  #: a cell is overloaded at the end of the last one
-    contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
-    contact_work: float  #: [J]
-    work: float  #: of the other forces [J]
-    loss: float  #: taken by hydrodynamic and material damping [J]
 
 
 class ExplicitEngine(Engine):

@@ -18,9 +18,10 @@ import numpy as np
 
 from lattice.criteria import cell_strains, combined_utilisation
 from lattice.engine import EdgeContact, State
-from lattice.explicit import ExplicitEngine, Marched, NodeForces
+from lattice.explicit import ExplicitEngine
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
+from lattice.march import Marched, NodeForces
 from lattice.sheet import Outcome, Sheet, edge_displacement
 from lattice.stiffness import Springs
 
@@ -79,6 +80,7 @@ class ExplicitSheet(Sheet):
         load = self._loads(force_u, force_q)
         e.start(self.state, self.present, (load, touch))
         self._book_half(-0.5, load, touch)
+        self._ease()
 
     def _march(self, t: float, done: int, load: NodeForces, contact: EdgeContact, impulse: Array) -> Marched:
         """Sub-steps to the next evaluation of the contact, or to a failure."""

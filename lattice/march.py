@@ -2,9 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
+import numpy as np
 from numba import njit
 
+from lattice.grid import Array, IntArray
 from lattice.kernels import A1, A2, A3, I1, overloaded, push, sweep
+
+
+@dataclass
+class NodeForces:
+    """Forces on single nodes: constant (k, 5), or linear in the displacement where ``tangent`` is used."""
+
+    row: IntArray  #: (k,)
+    column: IntArray  #: (k,)
+    force: Array  #: (k, 5) or, for a contact, (k, 3) [N], [N m]
+    at: Array = field(default_factory=lambda: np.empty((0, 3)))  #: (k, 3) displacement that has this force [m]
+    tangent: Array = field(default_factory=lambda: np.empty((0, 3, 3)))  #: (k, 3, 3) [N/m]
+
+    def padded(self) -> Array:
+        """Forces on all five degrees of freedom, (k, 5)."""
+        return np.ascontiguousarray(np.pad(self.force, ((0, 0), (0, 5 - self.force.shape[1]))))
+
+
+@dataclass(frozen=True)
+class Marched:
+    """Some sub-steps."""
+
+    steps: int
+    failed: bool  #: a cell is overloaded at the end of the last one
+    contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
+    contact_work: float  #: [J]
+    work: float  #: of the other forces [J]
+    loss: float  #: taken by hydrodynamic and material damping [J]
 
 
 @njit(f"void({I1}, {I1}, {A2}, {A2}, {A3}, {A2}, {A3}, {A3}, float64)", cache=True, nogil=True)

@@ -21,10 +21,11 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
-from lattice.explicit import ExplicitEngine, NodeForces
+from lattice.explicit import ExplicitEngine
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.kernels import overloaded, sweep
+from lattice.march import NodeForces
 from lattice.stiffness import hrennikoff
 
 SIZES = (60, 120, 240, 480)

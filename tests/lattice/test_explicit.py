@@ -9,12 +9,12 @@ from lattice.assembly import assemble
 from lattice.criteria import cell_strains, combined_utilisation
 from lattice.energy import EnergyBooks
 from lattice.engine import NoContact, State
-from lattice.explicit import ExplicitEngine, NodeForces
+from lattice.explicit import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
-from lattice.ice import Ice
+from lattice.ice import BeamTest, Ice
 from lattice.kernels import overloaded, sweep
-from lattice.march import march
+from lattice.march import NodeForces, march
 from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS, hrennikoff
 
@@ -211,17 +211,43 @@ def test_contact_may_be_linear_over_several_sub_steps():
     np.testing.assert_allclose(x[-1], y[-1], rtol=0, atol=1e-4 * np.abs(y[-1]).max())
 
 
+def pull(stress):
+    """Forces on the ends x- and x+ that make a uniform stress [Pa], (n, 2)."""
+    share, F = np.full(GRID.ny, GRID.d), np.zeros((GRID.nodes, 2))
+    share[[0, -1]] *= 0.5
+    for side, sign in (("x+", 1.0), ("x-", -1.0)):
+        F[GRID.edge_nodes(side), 0] = sign * stress * ICE.h * share
+    return F
+
+
 def pulled(until, stress=2.0, **options):
     """A sheet pulled at both ends at ``stress`` of the strength, suddenly, until some time; 1-ms windows."""
     sheet = ExplicitSheet(GRID, BRITTLE, hrennikoff(BRITTLE), 1e-3, held=FREE, share=0.0, **options)
-    share = np.full(GRID.ny, GRID.d)
-    share[[0, -1]] *= 0.5
-    F = np.zeros((GRID.nodes, 2))
-    F[GRID.edge_nodes("x+"), 0], F[GRID.edge_nodes("x-"), 0] = (k * stress * BRITTLE.sigma_t * ICE.h * share
-                                                               for k in (1.0, -1.0))
+    F = pull(stress * BRITTLE.sigma_t)
     for k in range(round(until / 1e-3)):
         sheet.advance(1e-3 * k, F, np.zeros((GRID.nodes, 3)), NoContact(), lambda nodes: None)
     return sheet
+
+
+@pytest.mark.parametrize("alpha", [0.0, 1e-3])
+def test_a_crack_leaves_its_flanks_standing(alpha):
+    """Uniform tension above the limit beside a crack: the cells ahead of a new hole fail, those in its shadow hold."""
+    ice = replace(BRITTLE, beam_test=BeamTest(length=18.0, width=6.0, failure_load=375e3, factor=0.75))
+    stress = 0.99 * ice.sigma_t
+    assert ice.stress_beside_crack(GRID.d) < stress
+    sheet = ExplicitSheet(GRID, ice, hrennikoff(ice), 1e-3, held=FREE, share=0.0, alpha=alpha)
+    x, y = GRID.xy.T
+    sheet.state.u[:] = stress / ice.E * np.column_stack((x, -ice.nu * y))
+    for k in range(10):
+        if k == 1:
+            hole = 4 * (GRID.ny - 1) + 3
+            sheet.intact[hole] = False
+            sheet.engine.remove(np.array([hole]))
+        sheet.advance(1e-3 * k, pull(stress), np.zeros((GRID.nodes, 3)), NoContact(), lambda nodes: None)
+        assert k > 0 or not sheet.failed_cells
+    cells = sheet.intact.reshape(GRID.nx - 1, GRID.ny - 1)
+    assert not cells[4].any()
+    assert cells[[3, 5]].all()
 
 
 def test_a_suddenly_pulled_sheet_overshoots():
