@@ -1,6 +1,6 @@
 """Sums of the contact impulses of a section over the sub-steps of a window.
 
-They are formed in the order of block numbers and places, never in pymunk's, which may follow memory addresses.
+They are formed in the order in which the solver goes through the contacts, see `arbiters`.
 """
 
 from __future__ import annotations
@@ -8,7 +8,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rubble.arbiters import CONTACT_COLUMNS
 from rubble.friction import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, shares, slot_of, tilt
 from rubble.geometry import Array
 from rubble.pointers import IntArray
@@ -21,33 +20,9 @@ SUM_COLUMNS = 7
 HEAVY_COLUMNS = 7
 
 
-@njit("boolean(int64[::1], float64[::1], int64[::1], float64[::1])", cache=True, nogil=True)
-def _after(pair_a: IntArray, a: Array, pair_b: IntArray, b: Array) -> bool:
-    for k in range(2):
-        if pair_a[k] != pair_b[k]:
-            return pair_a[k] > pair_b[k]
-    for k in range(CONTACT_COLUMNS):
-        if a[k] != b[k]:
-            return a[k] > b[k]
-    return False
-
-
-@njit("int64[::1](int64, int64[:, ::1], float64[:, ::1])", cache=True, nogil=True)
-def _order(n: int, pair: IntArray, values: Array) -> IntArray:
-    """Rows sorted by pair of slots, then by place: the same for every run."""
-    order = np.argsort(pair[:, 0] * 1_000_000 + pair[:, 1])  # nearly done; equal pairs are sorted below
-    for i in range(1, n):
-        here, j = order[i], i - 1
-        while j >= 0 and _after(pair[order[j]], values[order[j]], pair[here], values[here]):
-            order[j + 1] = order[j]
-            j -= 1
-        order[j + 1] = here
-    return order
-
-
-@njit("void(int64[::1], float64[::1])", cache=True, nogil=True)
-def _swap(pair: IntArray, v: Array) -> None:
-    pair[0], pair[1] = pair[1], pair[0]
+@njit("void(float64[::1])", cache=True, nogil=True)
+def _swap(v: Array) -> None:
+    """The contact as seen from the other body."""
     v[0], v[1], v[2], v[3] = v[2], v[3], v[0], v[1]
     v[4], v[5], v[7], v[8] = -v[4], -v[5], -v[7], -v[8]
 
@@ -103,9 +78,9 @@ def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: 
 
     ``limit`` = (strength times sub-step [Pa s], least length [m], widths of the blocks...); row 0 of ``heavy`` counts.
     """
-    jn, length = abs(first[6]), 0.0
+    jn, length = first[6], 0.0
     if first[2] != last[2] or first[3] != last[3]:
-        jn += abs(last[6])
+        jn += last[6]
         length = np.hypot(last[2] - first[2], last[3] - first[3])
     width = limit[2 + pair[1]] if pair[0] < 0 else min(limit[2 + pair[0]], limit[2 + pair[1]])
     if jn <= limit[0] * width * max(length, limit[1]):
@@ -132,38 +107,39 @@ def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: 
 def accumulate(n: int, bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, row: IntArray,
                state: Array, law: Array, side: Array, limit: Array, sheet: Array, sums: Array, nodes: Array,
                heavy: Array) -> int:
-    """Add the contacts of one sub-step; ``addresses`` (ascending) and ``slots`` tell blocks, structure and sheet apart.
+    """Add the contacts of one sub-step; ``addresses`` and ``slots`` (`friction.slot_table`) tell bodies apart.
 
     ``sums`` (blocks, 7) see SUM_COLUMNS; ``nodes`` (m, 4): x, z of the nodes and the impulse on them; ``sheet`` =
     (x, z of the sheet body's origin, its v_x, v_z, work done by the sheet on blocks, impulse x, z on it, moment);
     ``side`` (2, blocks): y and v_y; ``law`` of the structure; ``heavy`` see HEAVY_COLUMNS and `_note_heavy`.
     Returns the number of contacts with bodies that are neither block, sheet nor structure (must be 0).
     """
-    pair = np.empty((n, 2), np.int64)
-    strange = 0
-    for i in range(n):
-        pair[i, 0] = slot_of(bodies[i, 0], addresses, slots)
-        pair[i, 1] = slot_of(bodies[i, 1], addresses, slots)
-        strange += pair[i, 0] == UNKNOWN or pair[i, 1] == UNKNOWN
-        if pair[i, 0] > pair[i, 1]:  # smaller slot first: structure and sheet before blocks
-            _swap(pair[i], values[i])
-    order = _order(n, pair, values)
+    pair = np.empty(2, np.int64)
+    strange, crushes = 0, limit[0] < np.inf
+    a, b, turn, first = UNKNOWN, UNKNOWN, False, False
     for k in range(n):
-        i = order[k]
-        a, b, v = pair[i, 0], pair[i, 1], values[i]
-        if b < 0:
+        v = values[k]
+        first = k == 0 or bodies[k - 1, 0] != bodies[k, 0] or bodies[k - 1, 1] != bodies[k, 1]
+        if first:
+            a, b = slot_of(bodies[k, 0], addresses, slots), slot_of(bodies[k, 1], addresses, slots)
+            strange += a == UNKNOWN or b == UNKNOWN
+            turn = a > b  # smaller slot first: structure and sheet before blocks
+            if turn:
+                a, b = b, a
+        if a == UNKNOWN:
             continue
+        if turn:
+            _swap(v)
         if a == STRUCTURE_SLOT:
             _on_structure(v, law, state[row[b]], sums[b], side[0, b], side[1, b])
         elif a == SHEET_SLOT:
             _on_sheet(v, sheet, nodes)
-            sums[b, 5] += abs(v[6])
-            sums[b, 6] += abs(v[6])
+            sums[b, 5] += v[6]
+            sums[b, 6] += v[6]
         else:
-            sums[a, 5] += abs(v[6])
-            sums[b, 5] += abs(v[6])
-        last = k + 1 == n or pair[order[k + 1], 0] != a or pair[order[k + 1], 1] != b
-        if last and limit[0] < np.inf:
-            twin = k > 0 and pair[order[k - 1], 0] == a and pair[order[k - 1], 1] == b
-            _note_heavy(pair[i], values[order[k - 1]] if twin else v, v, limit, heavy)
+            sums[a, 5] += v[6]
+            sums[b, 5] += v[6]
+        if crushes and (k + 1 == n or bodies[k + 1, 0] != bodies[k, 0] or bodies[k + 1, 1] != bodies[k, 1]):
+            pair[0], pair[1] = a, b
+            _note_heavy(pair, v if first else values[k - 1], v, limit, heavy)
     return strange

@@ -20,6 +20,7 @@ import numpy as np
 from numba import carray, cfunc, njit
 from pymunk._chipmunk_cffi import ffi, lib
 
+from rubble.arbiters import ContactReader, note_contacts
 from rubble.geometry import Array
 from rubble.physics import RATE_DEPENDENT, RubblePhysics
 from rubble.pointers import OFFSETS, IntArray, offsets, pointer
@@ -29,9 +30,9 @@ STRUCTURE_SLOT, SHEET_SLOT, UNKNOWN = -1, -2, -3  #: slots of the bodies that ar
 CREEP = 1e-4  #: slip below which a contact counts as sticking in the plane [m/s]
 #: of a law: coefficient (negative: rate-dependent), 1 for a body of revolution, y of the section [m]
 LAW = 3
-#: header: address of the law, number of bodies, addresses of (bodies, slots, rows), rows of the state table, its
+#: header: address of the reader's header, of the law, number of bodies, addresses of (bodies, slots, rows), rows of the state table, its
 #: address, row of the sheet, addresses of (y, v_y) of the blocks
-_FIXED = 10
+_FIXED = 11
 
 
 @njit("float64(float64)", cache=True, nogil=True)
@@ -42,9 +43,26 @@ def rate_dependent(v: float) -> float:
 
 @njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True)
 def slot_of(body: int, bodies: IntArray, slots: IntArray) -> int:
-    """Slot of a body by its address; ``bodies`` ascending."""
-    i = np.searchsorted(bodies, body)
-    return slots[i] if i < len(bodies) and bodies[i] == body else UNKNOWN
+    """Slot of a body by its address, in the tables of `slot_table`."""
+    mask = bodies.shape[0] - 1
+    i = (body >> 4) & mask
+    while bodies[i] != body:
+        if bodies[i] == 0:
+            return UNKNOWN
+        i = (i + 1) & mask
+    return slots[i]
+
+
+def slot_table(bodies: list[int], slots: list[int]) -> tuple[IntArray, IntArray]:
+    """Hash tables (addresses, slots) with open addressing; their length is a power of two, 0 marks a free place."""
+    size = 1 << (4 * len(bodies)).bit_length()
+    keys, values = np.zeros(size, np.int64), np.full(size, UNKNOWN, np.int64)
+    for body, slot in zip(bodies, slots, strict=True):
+        i = (body >> 4) % size
+        while keys[i] != 0:
+            i = (i + 1) % size
+        keys[i], values[i] = body, slot
+    return keys, values
 
 
 @njit("UniTuple(float64, 2)(float64, float64, float64, float64, float64)", cache=True, nogil=True)
@@ -75,23 +93,23 @@ def shares(law: Array, p: float, n_y: float, v_s: float, v_y: float) -> tuple[fl
 @cfunc("void(voidptr, voidptr, voidptr)", cache=True)
 def _set_friction(arbiter: Any, space: Any, header: Any) -> None:
     """Pre-solve callback: friction of the pair into the arbiter."""
-    h = carray(header, 22, np.int64)
+    h = carray(header, 23, np.int64)
     base = carray(arbiter, 8, np.uint8).ctypes.data
-    law = carray(pointer(h[0]), 3, np.float64)
-    u = carray(pointer(base + h[16]), 1, np.float64)
+    law = carray(pointer(h[1]), 3, np.float64)
+    u = carray(pointer(base + h[17]), 1, np.float64)
     if law[0] >= 0.0 and law[1] == 0.0:
         u[0] = law[0]
         return
-    bodies, slots = carray(pointer(h[2]), h[1], np.int64), carray(pointer(h[3]), h[1], np.int64)
-    rows, state = carray(pointer(h[4]), h[1], np.int64), carray(pointer(h[6]), (h[5], 6), np.float64)
-    n = carray(pointer(base + h[14]), 2, np.float64)
-    c = carray(pointer(base + h[13]), 1, np.int64)[0]
+    bodies, slots = carray(pointer(h[3]), h[2], np.int64), carray(pointer(h[4]), h[2], np.int64)
+    rows, state = carray(pointer(h[5]), h[2], np.int64), carray(pointer(h[7]), (h[6], 6), np.float64)
+    n = carray(pointer(base + h[15]), 2, np.float64)
+    c = carray(pointer(base + h[14]), 1, np.int64)[0]
     slip, x, n_x, block = 0.0, 0.0, 0.0, -1
     for side in range(2):
-        body = carray(pointer(base + h[10 + side]), 1, np.int64)[0]
+        body = carray(pointer(base + h[11 + side]), 1, np.int64)[0]
         slot, sign = slot_of(body, bodies, slots), 1.0 if side == 1 else -1.0
-        r = carray(pointer(c + h[17 + side]), 2, np.float64)
-        row = h[7] if slot == SHEET_SLOT else (rows[slot] if slot >= 0 else -1)
+        r = carray(pointer(c + h[18 + side]), 2, np.float64)
+        row = h[8] if slot == SHEET_SLOT else (rows[slot] if slot >= 0 else -1)
         if row >= 0:
             vx, vz = state[row, 3] - state[row, 5] * r[1], state[row, 4] + state[row, 5] * r[0]
             slip += sign * (n[0] * vz - n[1] * vx)
@@ -101,7 +119,7 @@ def _set_friction(arbiter: Any, space: Any, header: Any) -> None:
     if law[1] == 0.0 or block < 0:
         u[0] = law[0] if law[0] >= 0.0 else rate_dependent(slip)
         return
-    y, v_y = carray(pointer(h[8]), block + 1, np.float64)[block], carray(pointer(h[9]), block + 1, np.float64)[block]
+    y, v_y = carray(pointer(h[9]), block + 1, np.float64)[block], carray(pointer(h[10]), block + 1, np.float64)[block]
     p, n_y = tilt(x, n_x, law[2], law[1], y)
     mu, more, across = shares(law, p, n_y, slip, v_y)
     u[0] = mu * more * np.sqrt(max(1.0 - across * across, 0.0))
@@ -113,21 +131,22 @@ def law_of(coefficient: float | str, revolved: bool = False, y: float = 0.0) -> 
 
 
 class PairFriction:
-    """The two laws of a space, ice on ice and ice on structure, and the handlers that apply them."""
+    """The two laws of a space, ice on ice and ice on structure, and the handlers that apply them and note contacts."""
 
-    def __init__(self, space: Any, physics: RubblePhysics, revolved: bool, y: float) -> None:
+    def __init__(self, space: Any, physics: RubblePhysics, revolved: bool, y: float, reader: ContactReader) -> None:
         self.ice, self.structure = law_of(physics.mu_ice_ice), law_of(physics.mu_structure, revolved, y)
         self._headers = [np.zeros(_FIXED + OFFSETS, np.int64) for _ in range(2)]
         for header, law in zip(self._headers, (self.ice, self.structure), strict=True):
-            header[0], header[_FIXED:] = law.ctypes.data, offsets()
+            header[0], header[1], header[_FIXED:] = reader.header.ctypes.data, law.ctypes.data, offsets()
         for pair, kind in (((ICE, ICE), 0), ((ICE, SHEET), 0), ((ICE, STRUCTURE), 1)):
             handler = lib.cpSpaceAddCollisionHandler(space._space, *pair)
             handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", _set_friction.address)
+            handler.postSolveFunc = ffi.cast("cpCollisionPostSolveFunc", note_contacts.address)
             handler.userData = ffi.cast("void *", self._headers[kind].ctypes.data)
 
-    def watch(self, bodies: IntArray, slots: IntArray, rows: IntArray, state: Array, sheet_row: int, y: Array,
-              v_y: Array) -> None:
-        """Where the callback finds the motion of the bodies; the caller keeps the arrays alive."""
+    def watch(self, bodies: IntArray, slots: IntArray, rows: IntArray, state: Array, sheet_row: int,
+              side: Array) -> None:
+        """Where the callback finds the motion of the bodies; ``side`` (2, blocks) y and v_y. The caller keeps them."""
         for header in self._headers:
-            header[1:_FIXED] = (len(bodies), bodies.ctypes.data, slots.ctypes.data, rows.ctypes.data, len(state),
-                           state.ctypes.data, sheet_row, y.ctypes.data, v_y.ctypes.data)
+            header[2:_FIXED] = (len(bodies), bodies.ctypes.data, slots.ctypes.data, rows.ctypes.data, len(state),
+                                state.ctypes.data, sheet_row, side[0].ctypes.data, side[1].ctypes.data)

@@ -16,6 +16,7 @@ from math import floor, inf, isfinite, pi
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rubble import table
 from rubble.block import ROTATING, SLIDING, Block, make_block
@@ -42,9 +43,9 @@ class Domain:
     depth: float = inf  #: greatest depth
     y_max: float = inf  #: greatest distance from the middle plane
 
-    def holds(self, x: float, y: float, z: float) -> bool:
-        """Whether a centre of mass is inside."""
-        return self.x_min <= x <= self.x_max and abs(y) <= self.y_max and z >= -self.depth
+    def holds(self, x: Array, y: Array, z: Array) -> NDArray[np.bool_]:
+        """Which centres of mass are inside."""
+        return (self.x_min <= x) & (x <= self.x_max) & (np.abs(y) <= self.y_max) & (z >= -self.depth)
 
 
 class RubbleLayer:
@@ -163,9 +164,11 @@ class RubbleLayer:
         for section in self.sections.values():
             self._after_window(section)
         for key, section in list(self.sections.items()):
-            places = section.state[:, :2].tolist()
-            for block, (x, z) in zip(list(section.blocks), places, strict=True):
-                if not self.domain.holds(x, block.y, z):
+            x, z, y = section.state[:, 0], section.state[:, 1], section.side[0]
+            gone = ~self.domain.holds(x, y, z)
+            off = gone | (np.abs(y - section.y) > 0.5 * self.pitch)
+            for block, out in [(section.blocks[i], gone[i]) for i in np.flatnonzero(off)]:
+                if out:
                     self._clear(section, block)
                 elif (step := self.key_at(block.y) - key) != 0:
                     self._cross(key, section, block, step)
@@ -194,16 +197,17 @@ class RubbleLayer:
 
     def _update_phases(self, section: Section) -> None:
         """Rotating until the long axis has once aligned with a slope near by and has left the sheet; then sliding."""
+        rotating = [i for i, block in enumerate(section.blocks) if block.phase == ROTATING]
+        if not rotating:
+            return
         slopes = section.nearest_slopes()
-        touching = section.sums[:, 6] > 0
-        for i, block in enumerate(section.blocks):
-            if block.phase == SLIDING:
-                continue
+        for i in rotating:
+            block, touching = section.blocks[i], section.sums[i, 6] > 0
             if not block.aligned and slopes[i, 1] <= block.prism.reach + self.physics.thickness:
                 period = pi if block.prism.slender else pi / 2
                 turn = block.prism.long_axis + section.state[i, 2] - slopes[i, 0]
                 block.aligned = bool(abs((turn + period / 2) % period - period / 2) <= self.physics.align_tolerance)
-            block.phase = SLIDING if block.aligned and not touching[i] else ROTATING
+            block.phase = SLIDING if block.aligned and not touching else ROTATING
 
     def _cross(self, key: int, section: Section, block: Block, step: int) -> None:
         """Hand a block to the section that it has moved into if there is room."""

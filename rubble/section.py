@@ -11,8 +11,8 @@ from pymunk import batch
 
 from rubble.arbiters import ContactReader
 from rubble.block import Block
-from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS, accumulate
-from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction
+from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS
+from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction, slot_table
 from rubble.geometry import Array, contiguous, exposed_edges, nearest_edges, overlap_area
 from rubble.physics import RubblePhysics
 from rubble.pointers import IntArray, address
@@ -53,7 +53,7 @@ class Section:
     def _connect(self) -> None:
         """What holds addresses: made anew after a snapshot has been loaded."""
         self._reader, self._buffer, self._out = ContactReader(), batch.Buffer(), batch.Buffer()
-        self._friction = PairFriction(self.space, self.physics, self.revolved, self.y)
+        self._friction = PairFriction(self.space, self.physics, self.revolved, self.y, self._reader)
         self.changed()
 
     def __getstate__(self) -> dict[str, Any]:
@@ -137,14 +137,13 @@ class Section:
         self._ids = [b.body.id for b in blocks]
         dead = [(b.thrust[0], b.thrust[1] - b.mass * g, b.thrust[2]) for b in blocks]
         self._dead = np.array(dead, dtype=np.float64).reshape(-1, 3)
-        limit = self.physics.contact_strength * self.physics.substep, self.physics.slop
+        limit = self.physics.contact_strength * self.physics.substep, 2.0 * self.physics.slop
         self._limit = np.array([*limit, *(b.prism.width for b in blocks)])
         bodies = [address(self.space.static_body._body), *(address(b.body._body) for b in blocks)]
         slots = [STRUCTURE_SLOT, *range(len(blocks))]
         if self.sheet is not None:
             bodies, slots = [*bodies, address(self.sheet.body._body)], [*slots, SHEET_SLOT]
-        order = np.argsort(bodies)
-        self._addresses, self._slots = np.array(bodies, np.int64)[order], np.array(slots, np.int64)[order]
+        self._addresses, self._slots = slot_table(bodies, slots)
         self._order_seen = np.zeros(0, np.uintp)
         outlines = [b.prism.polygon for b in blocks]
         self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
@@ -168,7 +167,9 @@ class Section:
             self._force = np.zeros((len(order), 3))
             self._out.set_float_buf(self._force)
             self._calls = Calls(self.space, self._buffer, _GET, self._out, _SET)
-        return np.frombuffer(self._buffer.float_buf(), np.float64).reshape(-1, STATE_COLUMNS)
+            self._state = np.frombuffer(self._buffer.float_buf(), np.float64).reshape(-1, STATE_COLUMNS)
+            self._friction.watch(self._addresses, self._slots, self._row, self._state, self._sheet_row, self.side)
+        return self._state
 
     # ---- motion -----------------------------------------------------------------------------------------------
 
@@ -180,7 +181,7 @@ class Section:
             self.sheet.nodes[:, 2:] = 0.0
         if not self.blocks and self.sheet is None:
             return
-        self.side = np.array([[b.y for b in self.blocks], [b.v_y for b in self.blocks]])
+        self.side[0], self.side[1] = [b.y for b in self.blocks], [b.v_y for b in self.blocks]
         self._flooded = np.array([b.flooded for b in self.blocks])
         done = 0
         while done < n_substeps:
@@ -190,24 +191,20 @@ class Section:
             block.flooded = share
 
     def _run(self, n: int) -> int:
-        """Up to ``n`` sub-steps in one compiled call; fewer if the table of contacts had to grow. Returns how many."""
+        """Up to ``n`` sub-steps in one compiled call; fewer if the table of contacts must grow. Returns how many."""
         state, reader, sheet = self._read_state(), self._reader, self.sheet
         spring, driver, nodes = (sheet.spring, sheet.driver, sheet.nodes) if sheet else (_NO, _NO, _NO_NODES)
-        self._friction.watch(self._addresses, self._slots, self._row, state, self._sheet_row, self.side[0],
-                             self.side[1])
         self.space._bodies_to_check.clear()  # masses are positive by construction
-        last = (self._addresses, self._slots, self._row, state, self._friction.structure, self.side, self._limit,
-                self.sheet_sums, self.sums, nodes, self.heavy)
         done = run(n, self.physics.substep, self._calls.table, reader.header, state, self._force, self._row,
                    self._edges, self._offset, self._dead, self.water, self._flooded, self.losses, self._sheet_row,
-                   spring, driver, reader.bodies, reader.values, *last[:2], *last[4:])
-        strange = done < 0
-        if 0 <= done < n:  # the contacts of this sub-step did not fit: enlarge, read and add them
-            count = reader.read(self.space)
-            strange = accumulate(count, reader.bodies, reader.values, *last) > 0
-            done += 1
-        if strange:
-            raise RuntimeError(f"section at y = {self.y:g} m: contact with a body that is no block, sheet or structure")
+                   spring, driver, reader.bodies, reader.values, self._addresses, self._slots,
+                   self._friction.structure, self.side, self._limit, self.sheet_sums, self.sums, nodes, self.heavy)
+        if done < 0:
+            what = (f"{reader.header[0]} contacts at once, room for {reader.capacity}" if done == -1 else
+                    "contact with a body that is no block, sheet or structure")
+            raise RuntimeError(f"section at y = {self.y:g} m: {what}; take out blocks that overlap")
+        if 2 * reader.header[0] > reader.capacity:
+            reader.reserve(4 * reader.capacity)
         return done
 
     def nearest_slopes(self) -> Array:
@@ -217,4 +214,4 @@ class Section:
 
 _NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
 _ADDRESSES = {"_reader", "_buffer", "_out", "_friction", "_calls", "_row", "_force", "_addresses", "_slots",
-              "_order_seen", "_ids"}
+              "_order_seen", "_ids", "_state"}

@@ -14,14 +14,11 @@ from numba import carray, njit
 from pymunk import batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from rubble.arbiters import HEADER
 from rubble.contacts import accumulate
 from rubble.geometry import Array
 from rubble.pointers import IntArray, address, for_each, pointer, step_space
 from rubble.sheet import spring_force
 from rubble.water import apply_water
-
-_CALLBACK, _DATA = HEADER, HEADER + 1
 
 
 class Calls:
@@ -31,8 +28,7 @@ class Calls:
         self._kept = [self._struct(get, fields), self._struct(put, put_fields)]
         float_num, int_num = ffi.offsetof("pmFloatArray", "num"), ffi.offsetof("pmIntArray", "num")
         functions = [ffi.addressof(lib, n) for n in (
-            "cpSpaceStep", "cpSpaceEachBody", "cpSpaceEachCachedArbiter", "pmSpaceBodyGetIteratorFuncBatched",
-            "pmSpaceBodySetIteratorFuncBatched")]
+            "cpSpaceStep", "cpSpaceEachBody", "pmSpaceBodyGetIteratorFuncBatched", "pmSpaceBodySetIteratorFuncBatched")]
         numbers = [address(get._float_arr) + float_num, address(get._int_arr) + int_num,
                    address(put._float_arr) + float_num]
         kept = map(address, self._kept)
@@ -53,30 +49,30 @@ def run(n: int, dt: float, calls: IntArray, header: IntArray, state: Array, forc
         offset: IntArray, dead: Array, water: Array, flooded: Array, losses: Array, sheet_row: int, spring: Array,
         driver: Array, bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, law: Array, side: Array,
         limit: Array, sheet: Array, sums: Array, nodes: Array, heavy: Array) -> int:
-    """Do ``n`` sub-steps; returns how many contacts were summed (n), or the sub-step whose contacts did not fit.
+    """Do up to ``n`` sub-steps and returns how many; fewer when the table of contacts (``header``) is half full.
 
-    ``state`` is the memory that the batch interface fills: valid before the call and after every step. -1 - k means
-    that sub-step k met a body that is no block, sheet or structure.
+    ``state`` is the memory that the batch interface fills: valid before the call and after every step. -1: a contact
+    did not fit any more; -2: one with a body that is no block, sheet or structure.
     """
-    get_floats, get_ints = carray(pointer(calls[8]), 1, np.int32), carray(pointer(calls[9]), 1, np.int32)
-    put_floats = carray(pointer(calls[10]), 1, np.int32)
+    get_floats, get_ints = carray(pointer(calls[7]), 1, np.int32), carray(pointer(calls[8]), 1, np.int32)
+    put_floats = carray(pointer(calls[9]), 1, np.int32)
     for k in range(n):
         apply_water(edges, offset, dead, water, flooded, row, state, force, losses)
         if sheet_row >= 0:
             spring_force(spring, dt, driver, state[sheet_row], force[sheet_row])
-        put_floats[0] = 0
-        for_each(calls[1], calls[5], calls[4], calls[7])
-        step_space(calls[0], calls[5], dt)
+        header[0] = put_floats[0] = 0
+        for_each(calls[1], calls[4], calls[3], calls[6])
+        step_space(calls[0], calls[4], dt)
         get_floats[0] = get_ints[0] = 0
-        for_each(calls[1], calls[5], calls[3], calls[6])
+        for_each(calls[1], calls[4], calls[2], calls[5])
         if sheet_row >= 0:
             sheet[0], sheet[1] = state[sheet_row, 0], state[sheet_row, 1]
             sheet[2], sheet[3] = state[sheet_row, 3], state[sheet_row, 4]
-        header[0] = 0
-        for_each(calls[2], calls[5], header[_CALLBACK], header[_DATA])
         if header[0] > header[1]:
-            return k
+            return -1
         if header[0] > 0 and accumulate(header[0], bodies, values, addresses, slots, row, state, law, side, limit,
                                         sheet, sums, nodes, heavy) > 0:
-            return -1 - k
+            return -2
+        if 2 * header[0] > header[1]:
+            return k + 1
     return n

@@ -79,7 +79,7 @@ def _edge_force(ax: float, az: float, bx: float, bz: float, width: float, z: flo
     """Add pressure and drag on one edge, whose water stands at height 0 when the centre stands at z."""
     ax, az, bx, bz = _wetted(ax, az, bx, bz, z)
     lx, lz = bx - ax, bz - az
-    length = np.hypot(lx, lz)
+    length = np.sqrt(lx * lx + lz * lz)
     if length == 0.0:
         return
     mean, tilt = -water[0] * (z + (az + bz) / 2), -water[0] * lz / 12
