@@ -34,6 +34,11 @@ def build(scenario: Scenario) -> Scheduler:
     port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, CONTACTS[scenario.contact.model])
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     ledger = Ledger(port.initial_mass)
+    if isinstance(rubble, RubblePort):
+        rubble.on_crushed = ledger.crush
+        if scenario.rubble.initial_volume > 0.0:
+            edges = port.edges(rubble.front_sections())
+            ledger.initial_mass += rubble.fill(edges, scenario.rubble.initial_volume, scenario.scenario.seed).mass
     return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[scenario.coupling.scheme])
 
 
@@ -74,7 +79,9 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         rho_i=i.density, rho_w=scenario.water.density, g=scenario.water.gravity, mu_ice_ice=r.friction_ice_ice,
         mu_structure=r.friction_structure, restitution=r.restitution, form_drag=r.form_drag, skin_drag=r.skin_drag,
         added_mass=r.added_mass, added_inertia=r.added_mass, thickness=i.thickness, iterations=r.iterations,
-        substep=r.substep, sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2)
+        substep=r.substep, sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2,
+        backfill=r.backfill, filling_time=r.filling_time,
+        contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength)
     pitch = r.columns_per_section * grid.d
     reach = float(structure.radius(0.0)) if structure.revolved else 0.0
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)

@@ -11,10 +11,23 @@ from typing import Annotated, Literal, Self
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from cosim.units import Acceleration, Angle, Density, Force, Length, LengthOrZero, Stress, Time, TimeOrZero, Velocity
+from cosim.units import (
+    Acceleration,
+    Angle,
+    Density,
+    Force,
+    Length,
+    LengthOrZero,
+    Stress,
+    Time,
+    TimeOrZero,
+    Velocity,
+    VolumeOrZero,
+)
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Coefficient = Annotated[float, Field(ge=0)]
+Friction = Coefficient | Literal["rate-dependent"]  #: 0.7 - 0.15 log10(v / 1e-6 m/s) (Lishman and Polojarvi 2015)
 
 
 def fault(key: str, text: str) -> PydanticCustomError:
@@ -172,12 +185,16 @@ class Rubble(Section):
     substep: Time = 0.005  #: constant step of the sections [s]
     iterations: int = Field(30, ge=1)  #: of the impulse solver; at least the depth of a chain of blocks
     columns_per_section: int = Field(1, ge=1)  #: node columns in one section
-    friction_ice_ice: Coefficient = 0.1
-    friction_structure: Coefficient = 0.1
+    friction_ice_ice: Friction = 0.1
+    friction_structure: Friction = 0.1
     restitution: Share = 0.1
     form_drag: Coefficient = 1.0
     skin_drag: Coefficient = 0.002
     added_mass: Coefficient = 0.2  #: share of the displaced mass
+    backfill: Literal["full", "none", "filling"] = "filling"  #: how the top of a new block that is pushed down floods
+    filling_time: Time = 5.0  #: a weir, q = 1.7 H^1.5 m2/s with H = 1 m, fills the head on 10-15 m of ice in 3-7 s
+    contact_strength: Stress = None  #: pressure at which a contact of a block crushes; default compressive_strength
+    initial_volume: VolumeOrZero = 0.0  #: ice that has settled in front of the structure before the run [m^3]
     threads: int = Field(1, ge=1)
 
 

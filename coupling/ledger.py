@@ -19,7 +19,7 @@ class Ledger:
 
     initial_mass: float  #: [kg]
     tolerance: float = 1e-9
-    trimmed_mass: float = 0.0  #: crushed at hand-over [kg]
+    trimmed_mass: float = 0.0  #: crushed at hand-over, and off the blocks later [kg]
     handed_over_mass: float = 0.0  #: that has become blocks [kg]
     mass_error: float = 0.0  #: largest so far, relative to the initial mass
     momentum_error: float = 0.0  #: largest of all hand-overs, relative
@@ -32,6 +32,10 @@ class Ledger:
         self.handed_over_mass += mass - trimmed
         self.momentum_error = max(self.momentum_error, momentum_error)
         self._check("momentum of a hand-over", momentum_error, t_ns)
+
+    def crush(self, mass: float) -> None:
+        """Books ice that blocks have lost at overloaded contacts."""
+        self.trimmed_mass += mass
 
     def close_window(self, t_ns: int, sheet: float, crushed: float, rubble: float, cleared: float,
                      energy: dict[str, float]) -> dict[str, float]:

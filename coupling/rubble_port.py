@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from coupling.handover import BlockBirth, births
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
+from rubble.initial import Pile, settle
 from rubble.layer import Domain, RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -42,6 +44,9 @@ class RubblePort:
         self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, revolved=structure.revolved,
                                  domain=domain, threads=threads)
         self.physics, self.columns_per_section = physics, columns_per_section
+        self.structure = structure
+        self.pile: Pile | None = None  #: the initial rubble as it settled
+        self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
         self._edges: dict[int, SheetEdge] = {}
         self._forces = SheetForces.none()
         self._fragments = 0
@@ -68,6 +73,27 @@ class RubblePort:
                                       b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
         return self.layer.block(number).mass
 
+    def front_sections(self) -> list[int]:
+        """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
+        half = float(self.structure.radius(0.0)) if self.structure.revolved else self.layer.domain.y_max
+        keys = range(self.layer.key_at(-half), self.layer.key_at(half) + 1)
+        return [k for k in keys if abs(self.layer.centre(k)) < half]
+
+    def fill(self, edges: dict[int, SheetEdge], volume: float, seed: int) -> Pile:
+        """Initial rubble: ``volume`` [m^3] of blocks settled under these edges, which stand still meanwhile."""
+        fronts = {}
+        for key, e in edges.items():
+            under = float(e.z[0]) - 0.5 * e.thickness
+            face = float(self.structure.face_x(self.layer.centre(key), under))
+            if np.isfinite(face):
+                self.layer.set_sheet(key, e.x, e.z, e.front, 0.0 * e.velocity, e.thickness, e.stiffness)
+                fronts[key] = (face, under)
+        try:
+            self.pile = settle(self.layer, fronts, volume, seed)
+        except RuntimeError as error:
+            raise SimulationError(str(error)) from error
+        return self.pile
+
     def sections_in_use(self) -> list[int]:
         """Sections that hold blocks or are next to one: those that must know where the sheet is."""
         return sorted({k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)})
@@ -88,10 +114,13 @@ class RubblePort:
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
+        crushed = self.layer.crushed_mass
         try:
             self.layer.advance(round(window_ns / NS / self.physics.substep))
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
+        if self.layer.crushed_mass > crushed:
+            self.on_crushed(self.layer.crushed_mass - crushed)
         nodes: list[IntArray] = [e.nodes for e in self._edges.values()]
         forces = [self.layer.sheet_forces(key) for key in self._edges]
         if nodes:
@@ -152,6 +181,10 @@ class NoRubble:
 
     def load(self) -> Array:
         return np.zeros((3, 3))
+
+
+def _ignore(mass: float) -> None:
+    """Nobody keeps books."""
 
 
 def _area(polygon: Array) -> float:

@@ -30,8 +30,8 @@ STRUCTURE_SLOT, SHEET_SLOT, UNKNOWN = -1, -2, -3  #: slots of the bodies that ar
 CREEP = 1e-4  #: slip below which a contact counts as sticking in the plane [m/s]
 #: of a law: coefficient (negative: rate-dependent), 1 for a body of revolution, y of the section [m]
 LAW = 3
-#: header: address of the reader's header, of the law, number of bodies, addresses of (bodies, slots, rows), rows of the state table, its
-#: address, row of the sheet, addresses of (y, v_y) of the blocks
+#: header: address of the reader's header, of the law, length of the tables of bodies, addresses of (bodies, slots,
+#: rows), rows of the state table, its address, row of the sheet, addresses of (y, v_y) of the blocks, offsets
 _FIXED = 11
 
 

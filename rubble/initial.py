@@ -25,6 +25,7 @@ class Pile:
 
     blocks: int
     volume: float  #: of ice [m^3]
+    mass: float  #: [kg]
     porosity: float  #: pore share of the room between sheet, structure and the pile's lower side
     slope: float  #: of the flank away from the structure, mean of the sections [rad]
     depth: float  #: of the deepest point below the sheet [m]
@@ -98,8 +99,9 @@ def measure(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], time:
             slopes.append(found[2])
             depths.append(found[3])
     on_sheet = sum(float(layer.sheet_forces(key)[:, 1].sum()) for key in layer.sections)
-    return Pile(len(layer.blocks), layer.mass / layer.physics.rho_i, pores / (ice + pores), float(np.mean(slopes)),
-                max(depths), time, calm, float(layer.load_on_structure[:, 2].sum()) + on_sheet)
+    lift = float(layer.load_on_structure[:, 2].sum()) + on_sheet
+    return Pile(len(layer.blocks), layer.mass / layer.physics.rho_i, layer.mass, pores / (ice + pores),
+                float(np.mean(slopes)), float(max(depths)), time, calm, lift)
 
 
 def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tuple[float, float, float, float] | None:
