@@ -16,6 +16,7 @@ from coupling.scheduler import RubbleParticipant, Scheduler
 from coupling.schemes import SCHEMES
 from coupling.sheet_port import SheetPort
 from coupling.structure import Structure, cone, plane_slope
+from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.sheet import Sheet
@@ -68,9 +69,11 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
     if s.sides == "held":
         held[grid.edge_nodes("y-")] = held[grid.edge_nodes("y+")] = True
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
-    windows = max(1, round(scenario.fracture.longest_step / scenario.coupling.window))
-    return Sheet(grid, ice, hrennikoff(ice), scenario.coupling.window, held=held, damping=damping,
-                 alpha=scenario.ice.material_damping, long_step=windows)
+    window, alpha = scenario.coupling.window, scenario.ice.material_damping
+    if scenario.fracture.propagation == "dynamic":
+        return ExplicitSheet(grid, ice, hrennikoff(ice), window, held=held, damping=damping, alpha=alpha)
+    windows = max(1, round(scenario.fracture.longest_step / window))
+    return Sheet(grid, ice, hrennikoff(ice), window, held=held, damping=damping, alpha=alpha, long_step=windows)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:

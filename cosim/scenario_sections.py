@@ -174,7 +174,8 @@ class Drift(Section):
 class Fracture(Section):
     """[fracture]"""
 
-    propagation: Literal["quasi-static"] = "quasi-static"
+    #: quasi-static: implicit engine, cracks run between two windows; dynamic: explicit engine with waves and inertia
+    propagation: Literal["quasi-static", "dynamic"] = "quasi-static"
     longest_step: Time = 0.2  #: longest step of the sheet while nothing fails and no rubble touches it [s]
 
 

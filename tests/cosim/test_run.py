@@ -49,3 +49,15 @@ def test_same_scenario_same_bits(tmp_path):
         assert json.loads(done.stdout)["simulated_s"] == 3.0
         files.append(out.read_bytes())
     assert files[0] == files[1]
+
+
+def test_both_engines_split_the_floe_at_the_same_load():
+    """One word in the scenario: quasi-static (implicit) or dynamic (explicit) crack propagation."""
+    split = {}
+    for word in ("quasi-static", "dynamic"):
+        options = ["sheet.nodes=[20, 20]", "scenario.duration='21 s'", "rubble.enabled=false",
+                   f"fracture.propagation='{word}'"]
+        events = run_scenario(load_scenario(CASE, options)).events
+        split[word] = next(e for e in events if e.kind == "split")
+    assert split["dynamic"].force[0] == pytest.approx(split["quasi-static"].force[0], rel=0.03)
+    assert split["dynamic"].t_ns == pytest.approx(split["quasi-static"].t_ns, rel=0.02)
