@@ -31,7 +31,7 @@ from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-CASES = {"floe_165m": 28.0, "floe_55m_centre": 21.0, "floe_55m_corner": 22.5, "floe_34x68m": 65.0}  #: end [s]
+CASES = {"floe_165m": 28.0, "floe_55m_centre": 21.0, "floe_55m_corner": 22.5, "floe_34x68m": 52.0}  #: end [s]
 NO_RUBBLE = SheetForces(np.empty(0, np.int64), np.empty((0, 3)))
 CELLS = 4  #: over which the fastest advance is taken; a single cell may lie ahead of the waves by a sub-step
 AFTER = 1.0  #: time after the first failure that counts as the first crack [s]

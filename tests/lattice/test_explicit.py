@@ -270,6 +270,15 @@ def test_a_broken_sheet_balances_its_energy_and_mirrors():
     np.testing.assert_array_equal(cells, cells[:, ::-1])
 
 
+def test_of_two_equal_neighbours_one_fails_first():
+    """A row of cells on either side of the middle is loaded alike; they do not fail in the same sub-step."""
+    sheet = pulled(0.02)
+    times, (i, j) = np.array(sheet.failure_times), np.divmod(sheet.failed_cells, GRID.ny - 1)
+    near = np.maximum(np.abs(i[:, None] - i), np.abs(j[:, None] - j)) == 1
+    assert near.any()
+    assert np.abs(times[:, None] - times)[near].min() > 0.0
+
+
 def test_pieces_leave_at_once_and_keep_their_state():
     left = []
     held = np.zeros(GRID.nodes, bool)
