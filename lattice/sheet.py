@@ -65,7 +65,7 @@ class Sheet:
         ``long_step`` is the largest number of windows in one step.
         """
         self.grid, self.ice, self.share, self.dt = grid, ice, share, dt
-        self.held: np.ndarray = held.reshape(grid.nodes, -1).any(axis=1)  #: nodes held in some direction, (nodes,)
+        self.held = np.asarray(held.reshape(grid.nodes, -1).any(axis=1))  #: nodes held in some direction, (nodes,)
         self.intact = np.ones(grid.cells, bool)
         self.present = np.ones(grid.nodes, bool)
         self.state = State.rest(grid.nodes)
