@@ -90,7 +90,7 @@ def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[
     return prism, (cx, cz)
 
 
-def cut_block(block: Block, physics: RubblePhysics, nx: float, nz: float, c: float) -> float:
+def cut_block(block: Block, nx: float, nz: float, c: float) -> float:
     """Take off what lies on ``nx x + nz z > c`` in the body frame; returns its mass [kg], 0 if less than two corners.
 
     The rest moves on as the part of a rigid body that it is: same rotation, its own centre's velocity.
@@ -99,15 +99,16 @@ def cut_block(block: Block, physics: RubblePhysics, nx: float, nz: float, c: flo
     rest = clip(block.prism.polygon, nx, nz, c)
     if len(rest) < 3 or moments(rest)[0] < 1e-6 * block.prism.area:
         return 0.0
-    before = block.mass
+    old = block.prism
     block.prism, (cx, cz) = make_prism(_distinct(rest), block.prism.cuts, block.prism.widths, density)
     body, angle, om = block.body, block.body.angle, block.body.angular_velocity
     dx, dz = cos(angle) * cx - sin(angle) * cz, sin(angle) * cx + cos(angle) * cz
     (x, z), (vx, vz) = body.position, body.velocity
     body.position, body.velocity = (x + dx, z + dz), (vx - om * dz, vz + om * dx)
-    _set_inertia(body, block.prism, physics, density)
+    body.mass *= block.prism.mass / old.mass
+    body.moment *= block.prism.inertia / old.inertia
     block.shape.unsafe_set_vertices([(float(a), float(b)) for a, b in block.prism.polygon])
-    return before - block.mass
+    return old.mass - block.mass
 
 
 def _set_inertia(body: pymunk.Body, prism: Prism, physics: RubblePhysics, density: float) -> None:
