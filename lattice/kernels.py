@@ -10,11 +10,12 @@ gathers its own. Both run along j without a branch. What one pass leaves for the
 array with lines at a constant distance: only then can the compiler prove that they do not overlap, and use its
 widest vectors. Broken cells have the weight 0; an axial connection carries the mean weight of its two cells.
 
-Arrays, all padded so that no node needs a special case (n_y rounded up to `LANES`):
+Arrays, all padded so that no node needs a special case, with every row at the start of a cache line: n_y below is
+rounded up to whole `LANES`, m_y is n_y + `LANES`.
 
 =========  ====================  ==========================================================================
-``y, v``   (5, n_x+1, n_y+1)     u_x, u_y, w, phi_x, phi_y; zero on the padding and on nodes that have left
-``intact`` (n_x+1, n_y+1)        1 or 0, cell (i, j) at [i+1, j+1]; zero all around
+``y, v``   (5, n_x+1, m_y)       u_x, u_y, w, phi_x, phi_y; zero on the padding and on nodes that have left
+``intact`` (n_x+1, m_y)          1 or 0, cell (i, j) at [i+1, j+1]; zero all around
 ``kick``   (3, n_x, n_y)         dt / mass of in-plane motion, of w, of the rotations; zero where held
 ``limit``  (n_x, n_y)            threshold of `overloaded` for cell (i, j), infinite where there is none
 ``spring`` (8,)                  half the constants K_n, K_s, K_out, G_r, G_t, K_n_dia, G_dia, and d/2
@@ -31,8 +32,8 @@ from numba import njit
 
 LANES = 8  #: doubles in the widest vector
 LINE = 1048  #: distance of the lines of ``rows``: an odd number of cache lines, so that they use all sets of a cache
-LINES = 19  #: 14 connection forces, 5 sums that a row leaves for the next one
-NX, SX, QX, BX, TX, NY, SY, QY, BY, TY, D1, D2, G1, G2, C0, C1, C2, C3, C4 = (k * LINE + 1 for k in range(LINES))
+LINES = 19  #: 14 connection forces, 5 sums that a row leaves for the next one; each begins after LANES zeros
+NX, SX, QX, BX, TX, NY, SY, QY, BY, TY, D1, D2, G1, G2, C0, C1, C2, C3, C4 = (k * LINE + LANES for k in range(LINES))
 
 A1, A2, A3 = "float64[::1]", "float64[:, ::1]", "float64[:, :, ::1]"
 I1 = "int64[::1]"
