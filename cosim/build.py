@@ -38,8 +38,9 @@ def build(scenario: Scenario) -> Scheduler:
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
         if scenario.rubble.initial_volume > 0.0:
-            edges = port.edges(rubble.front_sections())
-            ledger.initial_mass += rubble.fill(edges, scenario.rubble.initial_volume, scenario.scenario.seed).mass
+            ledger.initial_mass += rubble.fill(scenario.rubble.initial_volume, scenario.scenario.seed,
+                                               float(structure.face_x(0.0, ice.freeboard)), scenario.sheet.length,
+                                               port.z_mid).mass
     return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[scenario.coupling.scheme])
 
 

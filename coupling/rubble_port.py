@@ -16,6 +16,7 @@ from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 
 OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
+LID = 1e9  #: stiffness of the still sheet under which initial rubble settles [N/m]
 SMALLEST = 1e-3  #: share of h^2 below which what is left of a trimmed block counts as crushed
 
 
@@ -79,15 +80,17 @@ class RubblePort:
         keys = range(self.layer.key_at(-half), self.layer.key_at(half) + 1)
         return [k for k in keys if abs(self.layer.centre(k)) < half]
 
-    def fill(self, edges: dict[int, SheetEdge], volume: float, seed: int) -> Pile:
-        """Initial rubble: ``volume`` [m^3] of blocks settled under these edges, which stand still meanwhile."""
-        fronts = {}
-        for key, e in edges.items():
-            under = float(e.z[0]) - 0.5 * e.thickness
+    def fill(self, volume: float, seed: int, front: float, length: float, middle: float) -> Pile:
+        """Initial rubble: ``volume`` [m^3] settled under a still sheet from x = ``front`` back by ``length``, its middle
+        at z = ``middle`` [m]; the lattice's own edge takes its place in the first window."""
+        under, fronts = middle - 0.5 * self.physics.thickness, {}
+        x = front - np.arange(0.0, length, self.layer.pitch)
+        for key in self.front_sections():
             face = float(self.structure.face_x(self.layer.centre(key), under))
             if np.isfinite(face):
-                self.layer.set_sheet(key, e.x, e.z, e.front, 0.0 * e.velocity, e.thickness, e.stiffness)
-                fronts[key] = (face, under)
+                self.layer.set_sheet(key, x, np.full(len(x), middle), front, np.zeros((len(x), 2)),
+                                     self.physics.thickness, (LID, LID))
+                fronts[key] = (min(face, front), under)
         try:
             self.pile = settle(self.layer, fronts, volume, seed)
         except RuntimeError as error:

@@ -19,7 +19,7 @@ def pressed(strength=STRENGTH, angle=np.pi / 4, windows=100, force=FORCE):
     layer = RubbleLayer(physics, WIDTH, solids=lambda y: [WALL])
     box = place(np.array([(-3.0, -1.5), (3.0, -1.5), (3.0, 1.5), (-3.0, 1.5)]), 0.0, 0.0, angle, 0.0, 0.0)
     x = -float(box[:, 0].max())
-    layer.add_block(0, box + [x, 0.0], x * np.cos(angle) + np.array([-3.0, 3.0]), np.array([WIDTH]), 900.0,
+    layer.add_block(0, box + np.array([x, 0.0]), x * np.cos(angle) + np.array([-3.0, 3.0]), np.array([WIDTH]), 900.0,
                     (0.0, 0.0), 0.0, 0.0, 0, angle)
     lock_rotation(layer, 0)
     layer.block(0).body.mass = 1e5
