@@ -81,7 +81,7 @@ class RubblePort:
         return [k for k in keys if abs(self.layer.centre(k)) < half]
 
     def fill(self, volume: float, seed: int, front: float, length: float, middle: float) -> Pile:
-        """Initial rubble: ``volume`` [m^3] settled under a still sheet from x = ``front`` back by ``length``, its middle
+        """Initial rubble: ``volume`` [m^3] settled under a still sheet from x = ``front`` back by ``length``, middle
         at z = ``middle`` [m]; the lattice's own edge takes its place in the first window."""
         under, fronts = middle - 0.5 * self.physics.thickness, {}
         x = front - np.arange(0.0, length, self.layer.pitch)
