@@ -63,11 +63,12 @@ class ExplicitEngine(Engine):
         self.y, self.v = aligned(5, g.nx + 1, wide), aligned(5, g.nx + 1, wide)
         self._scratch, self._rows = aligned(3, 5, g.nx + 1, wide), aligned(LINES * LINE)
         self._cells, self._kick = aligned(g.nx + 1, wide), aligned(3, g.nx, columns)
-        self._limit = aligned(g.nx, columns)
+        self._limit, self._mass = aligned(g.nx, columns), aligned(3, g.nx, columns)
         self._limit[:] = np.inf
         free = np.where(self._held[::2], 0.0, dt / self.M_u[::2])
         for k, kick in enumerate((free, dt / self.M_q[::3], dt / self.M_q[1::3])):
             self._kick[k, :, : g.ny] = kick.reshape(g.nx, g.ny)
+        np.divide(dt, self._kick, out=self._mass, where=self._kick > 0.0)
         self._spring = np.array([0.5 * s.K_n_axi, 0.5 * s.K_s_axi, 0.5 * s.K_out, 0.5 * s.G_r_axi, 0.5 * s.G_t_axi,
                                  0.5 * s.K_n_dia, 0.5 * s.G_dia, 0.5 * g.d])
         per_mass = dt / (ice.rho_i * ice.h)
@@ -156,11 +157,11 @@ class ExplicitEngine(Engine):
         m = len(contact.row)
         total, books = np.zeros((m, 3)), np.zeros(3)
         made, count = march(steps, 1 if lively else steps, self.y, self.v, self._scratch, self._cells, self._kick,
-                            self._limit, self._spring, self._pace, self._crack, self._rows, load.row, load.column,
-                            load.force, contact.row, contact.column, contact.at, contact.force, contact.tangent,
-                            np.zeros((m, 5)), total, books)
-        contact_work, work, loss = self.dt * books
-        return Marched(made, count > 0, total / made, contact_work, work, loss * (1 if lively else made))
+                            self._mass, self._limit, self._spring, self._pace, self._crack, self._rows, load.row,
+                            load.column, load.force, contact.row, contact.column, contact.at, contact.force,
+                            contact.tangent, np.zeros((m, 5)), total, books)
+        loss = books[2] * (1 if lively else made)
+        return Marched(made, count > 0, total / made, self.dt * books[0], self.dt * books[1], loss)
 
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
         """As in `Engine`, for motions of the length of a window."""

@@ -27,7 +27,7 @@ from lattice.stiffness import Springs
 
 CONTACT_TIME = 2e-3  #: longest time between two evaluations of the contact law, linear in between [s]
 RISE = 1e-3  #: share by which a cell beside a new crack tip must be loaded further to fail
-LIVELY = 1e-6  #: loss in such a time, as share of the stored energy, from which on damping is booked every sub-step
+LIVELY = 2e-7  #: change of the loss of a block, as share of the stored energy, from which each sub-step is booked
 
 
 class ExplicitSheet(Sheet):
@@ -42,7 +42,7 @@ class ExplicitSheet(Sheet):
                                                      alpha=alpha, step=step)
         self.energy.engine = self.engine
         self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
-        self._lively = True
+        self._lively, self._loss_rate = True, 0.0
         self._eased = np.zeros(grid.cells)  #: limit of cells that a crack tip has just reached, else 0 [Pa]
         self._unconcentrated = np.full(grid.cells, ice.sigma_t)  #: limits before the last failure [Pa]
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
@@ -92,7 +92,9 @@ class ExplicitSheet(Sheet):
         self.energy.contact += out.contact_work
         self.energy.rubble += out.work
         self.energy.damping += out.loss
-        self._lively = out.failed or out.loss * self.block > LIVELY * self.energy.stored * out.steps
+        rate, self._loss_rate = self._loss_rate, out.loss / (out.steps * e.dt)
+        change = abs(self._loss_rate - rate) * self.block * e.dt
+        self._lively = out.failed or change > LIVELY * self.energy.stored
         return out
 
     # ---- failure -----------------------------------------------------------------------------------------------

@@ -61,16 +61,16 @@ def damped(v, before, y, after, intact, kick, spring, pace, rows):
 
 
 @njit(f"float64({A3}, {A3}, {A3}, {A3})", cache=True, nogil=True)
-def dissipated(v, before, after, kick):
-    """Work that damping took in a sub-step, times dt: mass x loss of velocity x mean velocity, exact for leapfrog."""
+def dissipated(v, before, after, mass):
+    """Work that damping took in a sub-step [J]: mass x loss of velocity x mean velocity, exact for leapfrog."""
     work = 0.0
-    for c in range(5):
-        part = max(0, min(c - 1, 2))
-        for i in range(kick.shape[1]):
-            for j in range(kick.shape[2]):
-                if kick[part, i, j] > 0.0:
-                    mean = 0.5 * (before[c, i, j] + v[c, i, j])
-                    work += (before[c, i, j] - after[c, i, j]) * mean / kick[part, i, j]
+    for i in range(mass.shape[1]):
+        for j in range(mass.shape[2]):
+            node = 0.0
+            for c in range(5):
+                part = mass[max(0, min(c - 1, 2)), i, j]
+                node += part * (before[c, i, j] - after[c, i, j]) * (before[c, i, j] + v[c, i, j])
+            work += 0.5 * node
     return work
 
 
@@ -84,19 +84,19 @@ def power(row, column, force, v):
     return total
 
 
-MARCH = (f"UniTuple(int64, 2)(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A2}, {A1}, "
+MARCH = (f"UniTuple(int64, 2)(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A3}, {A2}, {A1}, "
          f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A2}, {A2}, {A3}, {A2}, {A2}, {A1})")
 
 
 @njit(MARCH, cache=True, nogil=True)
-def march(steps, stride, y, v, scratch, intact, kick, limit, spring, pace, crack, rows, row, column, force,
+def march(steps, stride, y, v, scratch, intact, kick, mass, limit, spring, pace, crack, rows, row, column, force,
           touch_row, touch_column, at, touch, tangent, now, total, books):
     """Up to ``steps`` sub-steps; stops after the first one at whose end a cell is overloaded.
 
     ``force`` (k, 5) on the nodes (row, column) is constant; the contact is linear about ``at`` (m, 3) with the force
     ``touch`` (m, 3) and its ``tangent`` (m, 3, 3). Its forces, sub-step by sub-step, are added up in ``total`` (m, 3).
     Returns the sub-steps made and the number of overloaded faces. ``books`` (3,) takes the sums over the sub-steps of
-    the power of the contact and of the forces [W], and of dt times the work of damping [J s] in every ``stride``-th
+    the power of the contact and of the forces [W], and of the work of damping [J] in every ``stride``-th
     one (which costs as much as a sub-step; ``scratch`` (3, 5, n_x+1, n_y+1) is for that), all exact for leapfrog.
     """
     alpha, go = pace[0], pace[1]
@@ -113,7 +113,7 @@ def march(steps, stride, y, v, scratch, intact, kick, limit, spring, pace, crack
         books[0] += 0.5 * power(touch_row, touch_column, now, v)
         books[1] += 0.5 * power(row, column, force, v)
         if step % stride == 0:
-            books[2] += dissipated(v, scratch[0], scratch[2], kick)
+            books[2] += dissipated(v, scratch[0], scratch[2], mass)
         count = overloaded(y, v, limit, crack, alpha)
         if count > 0:
             return step + 1, count
