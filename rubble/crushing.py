@@ -11,9 +11,10 @@ force is capped.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from rubble.block import Block, cut_block
-from rubble.geometry import Array, clip
+from rubble.geometry import Array
 from rubble.section import Section
 
 
@@ -35,32 +36,52 @@ def crush(section: Section, window: float) -> tuple[float, Array]:
     return mass, momentum
 
 
+@njit("float64(float64[:, ::1], float64, float64, float64)", cache=True, nogil=True)
+def _chord(polygon: Array, nx: float, nz: float, at: float) -> float:
+    """Length of a convex polygon's cut by the line ``n . x = at``; along an edge its length."""
+    low, high, k = np.inf, -np.inf, polygon.shape[0]
+    eps = 1e-9 * (abs(at) + 1.0)
+    for i in range(k):
+        j = i + 1 if i + 1 < k else 0
+        di = polygon[i, 0] * nx + polygon[i, 1] * nz - at
+        dj = polygon[j, 0] * nx + polygon[j, 1] * nz - at
+        ti, tj = polygon[i, 1] * nx - polygon[i, 0] * nz, polygon[j, 1] * nx - polygon[j, 0] * nz
+        if abs(di) <= eps:
+            low, high = min(low, ti), max(high, ti)
+        elif abs(dj) > eps and di * dj < 0.0:
+            t = ti + di / (di - dj) * (tj - ti)
+            low, high = min(low, t), max(high, t)
+    return max(high - low, 0.0)
+
+
 def depth_for(block: Block, normal: Array, needed: float, impulse: float, window: float) -> tuple[float, float]:
     """How far a block must be cut back along the outward ``normal`` (2,) for a contact of ``needed`` area, and how far
     it recedes in this window [m]; the first is infinite if no section of the block is wide enough."""
-    polygon, c, s = block.prism.polygon, np.cos(block.body.angle), np.sin(block.body.angle)
-    own = np.array([c * normal[0] + s * normal[1], -s * normal[0] + c * normal[1]])
-    reach = np.sort(polygon @ own)[::-1]
+    c, s = np.cos(block.body.angle), np.sin(block.body.angle)
+    nx, nz = float(c * normal[0] + s * normal[1]), float(-s * normal[0] + c * normal[1])
     chord = needed / block.prism.width
-    there = min(_chord(polygon, own, float(reach[0])) / chord, 1.0)
-    pace = float(0.5 * impulse * (1.0 - there) / block.body.mass * window)
-    for far, near in zip(reach[1:], reach[:-1], strict=True):  # the chord is linear between corners
-        wide, narrow = _chord(polygon, own, far), _chord(polygon, own, near)
-        if max(wide, narrow) >= chord and near - far > 0.0:
-            share = 0.0 if narrow >= chord else (chord - narrow) / (wide - narrow)
-            lacking = float(reach[0] - near + share * (near - far))
-            return lacking, min(lacking, pace)
+    lacking, there = _cut_depth(block.prism.polygon, nx, nz, chord)
+    pace = 0.5 * impulse * (1.0 - min(there / chord, 1.0)) / block.body.mass * window
+    return lacking, min(lacking, float(pace))
+
+
+@njit("UniTuple(float64, 2)(float64[:, ::1], float64, float64, float64)", cache=True, nogil=True)
+def _cut_depth(polygon: Array, nx: float, nz: float, chord: float) -> tuple[float, float]:
+    """Depth below the farthest corner along n at which a convex polygon is ``chord`` wide (inf: nowhere), and its width
+    at that corner."""
+    reach = np.sort(polygon[:, 0] * nx + polygon[:, 1] * nz)[::-1]
+    there = _chord(polygon, nx, nz, reach[0])
+    near, narrow = reach[0], there
+    for far in reach[1:]:
+        if narrow >= chord:
+            break
+        wide = _chord(polygon, nx, nz, far)
         if wide < narrow:
-            break  # past the widest place
-    return float("inf"), pace
-
-
-def _chord(polygon: Array, n: Array, at: float) -> float:
-    """Length of the polygon's cut by the line ``n . x = at``."""
-    eps = 1e-9 * float(np.abs(polygon).max())
-    rest = clip(polygon, -n[0], -n[1], -(at - eps))
-    on = rest[np.abs(rest @ n - (at - eps)) < 2 * eps] if len(rest) else rest
-    return float(np.ptp(on @ np.array([-n[1], n[0]]))) if len(on) > 1 else 0.0
+            return np.inf, there  # past the widest place
+        if wide >= chord:  # the chord is linear between corners
+            return reach[0] - near + (chord - narrow) / (wide - narrow) * (near - far), there
+        near, narrow = far, wide
+    return (reach[0] - near if narrow >= chord else np.inf), there
 
 
 def _cut(block: Block, normal: Array, depth: float) -> float:

@@ -198,8 +198,8 @@ class RubbleLayer:
     def _update_phases(self, section: Section) -> None:
         """Rotating until the long axis has once aligned with a slope near by and has left the sheet; then sliding."""
         rotating = [i for i, block in enumerate(section.blocks) if block.phase == ROTATING]
-        if not rotating:
-            return
+        if not rotating or len(section.slopes) == 0:
+            return  # without a slope nothing aligns
         slopes = section.nearest_slopes()
         for i in rotating:
             block, touching = section.blocks[i], section.sums[i, 6] > 0
