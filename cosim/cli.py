@@ -1,4 +1,4 @@
-"""The command line: ``cosim run | replay | compare | verify | info | recover | list``.
+"""The command line: ``cosim run | replay | compare | report | verify | info | recover | list``.
 
 Only this file exits. Every expected error is one line on standard error: exit 2 for a bad input, 1 for a failed run or
 check. With ``--json`` standard output holds one JSON object and nothing else. Slow imports stay inside the commands.
@@ -146,6 +146,20 @@ def list_scenarios(as_json: JsonOption = False) -> None:
     rows = [{"name": s.name, "title": s.title, "description": s.model.scenario.description,
              "duration_s": s.duration_ns / 1e9} for s in found]
     _print_json({"scenarios": rows}) if as_json else print_scenarios(rows)
+
+
+@app.command()
+def report(
+    recording: RunArgument,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the page (.html)")],
+) -> None:
+    """One HTML page of a recording: loads by phase, balances, events, numbers beside the reference."""
+    from cosim.console import print_line
+    from cosim.recording import read_run
+    from cosim.report import write_report
+
+    write_report(read_run(recording), _writable(output))
+    print_line(f"{output}: written")
 
 
 @app.command()

@@ -90,12 +90,17 @@ def compare_table(title: str, rows: list[Row]) -> Table:
     """Simulated beside computed and measured."""
     table = _table("feature", "simulated", "thesis", "ratio", "measured", "ratio", "unit", title=title)
     for row in rows:
-        f = row.feature
-        factor, unit = SCALES.get(f.unit, (1.0, f.unit))
-        table.add_row(f.name, _number(row.simulated, factor), _range(f.thesis, factor),
-                      _number(ratio(row.simulated, f.thesis), 1.0), _range(f.measured, factor),
-                      _number(ratio(row.simulated, f.measured), 1.0), unit)
+        table.add_row(*compare_cells(row))
     return table
+
+
+def compare_cells(row: Row) -> tuple[str, ...]:
+    """Name, simulated, thesis, ratio, measured, ratio and unit of a feature, as text."""
+    f = row.feature
+    factor, unit = SCALES.get(f.unit, (1.0, f.unit))
+    beside = [text for value in (f.thesis, f.measured)
+              for text in (_range(value, factor), _number(ratio(row.simulated, value), 1.0))]
+    return f.name, _number(row.simulated, factor), *beside, unit
 
 
 def print_run(result: dict[str, Any]) -> None:

@@ -32,6 +32,7 @@ from lattice.linear import CrackedSystem
 from lattice.stiffness import Springs
 
 GAMMA = 1.0 - np.sqrt(0.5)
+CLOSED = 1e-12  #: displacement below which a contact that hardly touches counts as solved [m]
 
 
 class StepError(RuntimeError):
@@ -230,7 +231,7 @@ class Engine:
                 if np.linalg.norm(residual) < (1.0 - 0.1 * 0.5**halving) * old:
                     break
             y = trial
-            if np.linalg.norm(residual) <= 1e-10 * np.linalg.norm(y - free):
+            if np.linalg.norm(residual) <= 1e-10 * np.linalg.norm(y - free) + CLOSED:
                 return f
         raise StepError(f"contact of the sheet's edge found no equilibrium at t = {t:.4f} s: use a shorter window")
 
