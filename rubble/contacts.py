@@ -76,13 +76,14 @@ def _on_sheet(v: Array, sheet: Array, nodes: Array) -> None:
 def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: Array) -> None:
     """Keep a pair whose normal impulse exceeds strength times contact length times width in a sub-step.
 
-    ``limit`` = (strength times sub-step [Pa s], least length [m], widths of the blocks...); row 0 of ``heavy`` counts.
+    ``limit`` = (strength times sub-step [Pa s], least length [m], least impulse that can be too much [N s], widths
+    of the blocks...); row 0 of ``heavy`` counts.
     """
     jn, length = first[6], 0.0
     if first[2] != last[2] or first[3] != last[3]:
         jn += last[6]
         length = np.hypot(last[2] - first[2], last[3] - first[3])
-    width = limit[2 + pair[1]] if pair[0] < 0 else min(limit[2 + pair[0]], limit[2 + pair[1]])
+    width = limit[3 + pair[1]] if pair[0] < 0 else min(limit[3 + pair[0]], limit[3 + pair[1]])
     if jn <= limit[0] * width * max(length, limit[1]):
         return
     k, count = 1, int(heavy[0, 0])
@@ -140,6 +141,8 @@ def accumulate(n: int, bodies: IntArray, values: Array, addresses: IntArray, slo
             sums[a, 5] += v[6]
             sums[b, 5] += v[6]
         if crushes and (k + 1 == n or bodies[k + 1, 0] != bodies[k, 0] or bodies[k + 1, 1] != bodies[k, 1]):
+            if v[6] + (0.0 if first else values[k - 1, 6]) <= limit[2]:
+                continue
             pair[0], pair[1] = a, b
             _note_heavy(pair, v if first else values[k - 1], v, limit, heavy)
     return strange

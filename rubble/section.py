@@ -138,7 +138,8 @@ class Section:
         dead = [(b.thrust[0], b.thrust[1] - b.mass * g, b.thrust[2]) for b in blocks]
         self._dead = np.array(dead, dtype=np.float64).reshape(-1, 3)
         limit = self.physics.contact_strength * self.physics.substep, 2.0 * self.physics.slop
-        self._limit = np.array([*limit, *(b.prism.width for b in blocks)])
+        widths = [b.prism.width for b in blocks]
+        self._limit = np.array([*limit, limit[0] * limit[1] * min(widths, default=0.0), *widths])
         bodies = [address(self.space.static_body._body), *(address(b.body._body) for b in blocks)]
         slots = [STRUCTURE_SLOT, *range(len(blocks))]
         if self.sheet is not None:
