@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coupling.interface import Array, IntArray
-from coupling.structure import Structure
+from coupling.structure import Structure, overlap_of
 
 SAMPLES = 8  #: points across the width of a node
 
@@ -63,9 +63,7 @@ class OverlapContact:
         z = self._z + y[:, 2]
         x = self._x + self._v * t + y[:, 0]
         across = self._sample_y + y[:, 1:2]
-        face = self._s.face_x(across, z[:, None])
-        L = np.where(np.isnan(face), 0.0, np.maximum(x[:, None] - face, 0.0))
-        return L, np.nan_to_num(self._s.normal(across, z[:, None]), nan=1.0)
+        return overlap_of(x, across, z, self._s.z, self._s.r, self._s.revolved)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] for y = u_x, u_y, w: an `EdgeContact`."""

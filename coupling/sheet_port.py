@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numba import njit
 
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
@@ -200,12 +201,8 @@ class SheetPort:
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""
         g, live = self.sheet.grid, self.sheet.live_cells
-        corner = g.cell_nodes.ravel()
-        cells = np.bincount(corner, minlength=g.nodes)
-        intact = np.bincount(corner, weights=np.repeat(self.sheet.intact, 4), minlength=g.nodes)
-        utilisation = np.zeros(g.nodes)
-        np.maximum.at(utilisation, corner, np.repeat(np.where(live, self.sheet.utilisation, 0.0), 4))
-        return SheetView(self._position(np.arange(g.nodes)), 1.0 - intact / cells, utilisation,
+        damage, utilisation = _at_nodes(g.cell_nodes, g.nodes, self.sheet.intact, live, self.sheet.utilisation)
+        return SheetView(self._position(np.arange(g.nodes)), damage, utilisation,
                          self.sheet.present.copy(), live, (g.nx, g.ny), (g.nx - 1, g.ny - 1))
 
     # ---- events -----------------------------------------------------------------------------------------------
@@ -245,3 +242,17 @@ class SheetPort:
         force = (float(load[0]), float(load[1]), float(load[2]))
         place = (float(where[0]), float(where[1]), float(where[2]))
         return Event(t_ns, kind, force, cells, place, text)
+
+
+@njit(cache=True)
+def _at_nodes(cell_nodes, nodes, intact, live, utilisation):
+    """Share of failed cells and largest utilisation of live ones around each node, (nodes,) both."""
+    every, failed, worst = np.zeros(nodes), np.zeros(nodes), np.zeros(nodes)
+    for c in range(cell_nodes.shape[0]):
+        for n in cell_nodes[c]:
+            every[n] += 1.0
+            if not intact[c]:
+                failed[n] += 1.0
+            if live[c] and utilisation[c] > worst[n]:
+                worst[n] = utilisation[c]
+    return failed / every, worst

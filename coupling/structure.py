@@ -12,14 +12,41 @@ ice clears away from the middle.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite, pi, sqrt, tan
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
 DEEP = 1000.0  #: depth of a structure that stands on the sea bed, out of reach of any ice [m]
+
+
+@njit(cache=True)
+def overlap_of(x, y, z, profile_z, profile_r, revolved):
+    """How far ice at x (m,) reaches behind the face at y (m, k) and z (m,), 0 without a face, and normals (m, k, 3)."""
+    L, normal = np.zeros(y.shape), np.ones((*y.shape, 3))
+    last = len(profile_z) - 1
+    for i in range(y.shape[0]):
+        if not profile_z[0] <= z[i] <= profile_z[last]:
+            continue
+        p = 0
+        while p < last - 1 and z[i] >= profile_z[p + 1]:
+            p += 1
+        slope = (profile_r[p + 1] - profile_r[p]) / (profile_z[p + 1] - profile_z[p])
+        r = profile_r[p] + slope * (z[i] - profile_z[p])
+        length = sqrt(1.0 + slope**2)
+        for k in range(y.shape[1]):
+            across = y[i, k] if revolved else 0.0
+            if across * across <= r * r:
+                face = -sqrt(r * r - across * across) if revolved else -r
+                L[i, k] = max(x[i] - face, 0.0)
+                normal[i, k, 0] = (face / r if revolved else -1.0) / length
+                normal[i, k, 1] = across / r / length if revolved else 0.0
+                normal[i, k, 2] = -slope / length
+    return L, normal
 
 
 @dataclass(frozen=True)
@@ -39,12 +66,12 @@ class Structure:
         if self.revolved and (r.min() < 0 or r.max() <= 0):
             raise ValueError(f"profile has radius {r.min():g} m; a body of revolution needs r >= 0, raise it")
 
-    @property
+    @cached_property
     def z(self) -> Array:
         """Heights of the profile points, ascending [m]."""
         return np.array([p[0] for p in self.profile])
 
-    @property
+    @cached_property
     def r(self) -> Array:
         """Radii of the profile points [m]."""
         return np.array([p[1] for p in self.profile])

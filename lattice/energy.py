@@ -20,20 +20,17 @@ from numba import njit
 
 from lattice.engine import GAMMA, Engine, State, Step
 from lattice.grid import Array, IntArray
+from lattice.springs import spring_energy
 
 
 @njit(cache=True)
-def spring_energy(dof, K_cell, live, x):
-    """Sum over live cells of x . K_cell x / 2 [J]; ``dof`` (cells, m), ``x`` (n,)."""
-    m = dof.shape[1]
-    total = 0.0
-    for c in range(dof.shape[0]):
-        if live[c]:
-            for i in range(m):
-                row = 0.0
-                for j in range(m):
-                    row += K_cell[i, j] * x[dof[c, j]]
-                total += 0.5 * x[dof[c, i]] * row
+def weighted_square(weight, x, present):
+    """Sum of weight x^2 over the nodes that are present; ``weight`` (n k,), ``x`` (n, k)."""
+    total, k = 0.0, x.shape[1]
+    for n in range(x.shape[0]):
+        if present[n]:
+            for i in range(k):
+                total += weight[n * k + i] * x[n, i] ** 2
     return total
 
 
@@ -62,8 +59,8 @@ class EnergyBooks:
     def springs(self, u: Array, q: Array, live: np.ndarray) -> float:
         """Elastic energy of live cells [J]."""
         e = self.engine
-        return float(spring_energy(e.dof_u, e.K_cell_u, live, u.ravel())
-                     + spring_energy(e.dof_q, e.K_cell_q, live, q.ravel()))
+        return float(spring_energy(e.dof_u, *e.sparse_u, live, u.ravel())
+                     + spring_energy(e.dof_q, *e.sparse_q, live, q.ravel()))
 
     def measure(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Takes stock of a state."""
@@ -73,11 +70,10 @@ class EnergyBooks:
 
     def _kinetic(self, s: State, present: np.ndarray) -> float:
         e = self.engine
-        return 0.5 * float((e.M_u.reshape(-1, 2) * s.u_dot**2)[present].sum()
-                           + (e.M_q.reshape(-1, 3) * s.q_dot**2)[present].sum())
+        return 0.5 * float(weighted_square(e.M_u, s.u_dot, present) + weighted_square(e.M_q, s.q_dot, present))
 
     def _foundation(self, q: Array, present: np.ndarray) -> float:
-        return 0.5 * float((self.engine.k_f.reshape(-1, 3) * q**2)[present].sum())
+        return 0.5 * float(weighted_square(self.engine.k_f, q, present))
 
     def book_step(self, step: Step, force_u: Array, force_q: Array, nodes: IntArray, live: np.ndarray,
                   present: np.ndarray) -> None:
@@ -88,9 +84,9 @@ class EnergyBooks:
             s = stage.state
             v = np.column_stack((s.u_dot[nodes], s.q_dot[nodes, 0]))
             self.contact += dt * b * float((stage.contact * v).sum())
-            self.rubble += dt * b * float((force_u * s.u_dot)[present].sum() + (force_q * s.q_dot)[present].sum())
+            self.rubble += dt * b * float(np.vdot(force_u, s.u_dot) + np.vdot(force_q, s.q_dot))
             rate = self.springs(s.u_dot, s.q_dot, live)
-            water = float((e.C_q.reshape(-1, 3) * s.q_dot**2)[present].sum())
+            water = float(weighted_square(e.C_q, s.q_dot, present))
             self.damping += dt * b * (water + 2.0 * e.alpha * rate)
             acceleration = State(s.u, s.q, stage.u_acc, stage.q_acc)
             norms.append(2.0 * (rate + self._foundation(s.q_dot, present) + self._kinetic(acceleration, present)))
@@ -105,7 +101,7 @@ class EnergyBooks:
 
     def loss_rate(self, s: State, live: np.ndarray, present: np.ndarray) -> float:
         """Power taken by damping in a state [W]."""
-        water = float((self.engine.C_q.reshape(-1, 3) * s.q_dot**2)[present].sum())
+        water = float(weighted_square(self.engine.C_q, s.q_dot, present))
         alpha = self.engine.alpha
         return water + 2.0 * alpha * self.springs(s.u_dot, s.q_dot, live) if alpha else water
 

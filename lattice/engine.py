@@ -29,6 +29,7 @@ from lattice.assembly import (
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.linear import CrackedSystem
+from lattice.springs import sparse_rows
 from lattice.stiffness import Springs
 
 GAMMA = 1.0 - np.sqrt(0.5)
@@ -150,7 +151,7 @@ class Engine:
         self.M_u, self.M_q = in_plane_mass(grid, ice), out_of_plane_mass(grid, ice)
         self.C_q, self.k_f = foundation(grid, damping), foundation(grid, ice.k_f)
         self.rows_u, self.rows_q = in_plane_springs(springs), out_of_plane_springs(springs, grid.d)
-        self.K_cell_u, self.K_cell_q = self.rows_u.T @ self.rows_u, self.rows_q.T @ self.rows_q
+        self.sparse_u, self.sparse_q = sparse_rows(self.rows_u), sparse_rows(self.rows_q)
         self.dof_u, self.dof_q = cell_dof(grid, 2), cell_dof(grid, 3)
         self._held = np.broadcast_to(held_in_plane.reshape(grid.nodes, -1), (grid.nodes, 2)).ravel()
         self._intact = np.ones(grid.cells, bool)

@@ -74,6 +74,7 @@ class Sheet:
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
         self._longest, self._windows, self._wait = long_step, min(2, long_step), 0
+        self._known: tuple[bytes, np.ndarray, Array] | None = None
         self._long: LongStep | None = None
 
     def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
@@ -184,7 +185,15 @@ class Sheet:
         return np.where(self.live_cells, utilisation, 0.0)
 
     def _limits(self) -> Array:
-        return tensile_limits(self.grid, self.live_cells, self.ice)
+        return self._cells()[1]
+
+    def _cells(self) -> tuple[np.ndarray, Array]:
+        """Live cells and their tensile limits, kept until a cell fails or a node leaves."""
+        key = self.intact.tobytes() + self.present.tobytes()
+        if self._known is None or self._known[0] != key:
+            live: np.ndarray = self.intact & self.present[self.grid.cell_nodes].all(axis=1)
+            self._known = key, live, tensile_limits(self.grid, live, self.ice)
+        return self._known[1:]
 
     def _fail(self, cell: int) -> None:
         self.energy.book_failure(cell, self.state)
@@ -213,8 +222,8 @@ class Sheet:
 
     @property
     def live_cells(self) -> np.ndarray:
-        """Intact cells whose nodes are all still in the lattice, (cells,)."""
-        return self.intact & self.present[self.grid.cell_nodes].all(axis=1)
+        """Intact cells whose nodes are all still in the lattice, (cells,). Not to be written to."""
+        return self._cells()[0]
 
     @property
     def front(self) -> IntArray:
