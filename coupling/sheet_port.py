@@ -125,13 +125,23 @@ class SheetPort:
     @property
     def mass(self) -> float:
         """Ice in the lattice, without what was crushed off its edge [kg]."""
-        n = np.flatnonzero(self.sheet.present)
-        return float((self._ice_mass(n) - self._crushed(n)).sum())
+        whole = self.sheet.grid.area[self.sheet.present].sum() * self.sheet.ice.rho_i * self.sheet.ice.h
+        return float(whole) - self._crushed_edge()
 
     @property
     def crushed(self) -> float:
         """All ice crushed off the edge so far [kg]."""
-        return self.crushed_mass + float(self._crushed(np.flatnonzero(self.sheet.present)).sum())
+        return self.crushed_mass + self._crushed_edge()
+
+    def _crushed_edge(self) -> float:
+        """Mass crushed off the nodes that are in the lattice: those of the rows that the cuts reach [kg]."""
+        column = np.flatnonzero((self.edge.depth > 0.0) & (self.edge.front >= 0))
+        if not len(column):
+            return 0.0
+        reach = int(self.edge.depth.max() / self.sheet.grid.d) + 2
+        row = self.edge.front[column, None] - np.arange(reach)
+        nodes = (row * self.sheet.grid.ny + column[:, None])[row >= 0]
+        return float(self._crushed(nodes[self.sheet.present[nodes]]).sum())
 
     def _fragment(self, nodes: IntArray) -> Fragment:
         g, s = self.sheet.grid, self.sheet.state
