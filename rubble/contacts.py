@@ -8,9 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from rubble.friction import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, shares, slot_of, tilt
+from rubble.arbiters import read_contact
+from rubble.friction import STRUCTURE_SLOT, UNKNOWN, shares, slot_of, tilt
 from rubble.geometry import Array
-from rubble.pointers import IntArray
+from rubble.pointers import IntArray, integer, real, short
 
 #: columns of the sums of a block over a window [N s]: impulse on the structure x, z; side impulse N n_y of the
 #: structure on the block; mu N of the structure; mu N weighted with 1 / p; normal impulses on other ice; with the sheet
@@ -18,13 +19,6 @@ SUM_COLUMNS = 7
 #: columns of an overloaded pair over a window: slots a and b, sub-steps, impulse along the normal, its x and z part on
 #: b, length of the contact weighted with the impulse
 HEAVY_COLUMNS = 7
-
-
-@njit("void(float64[::1])", cache=True, nogil=True)
-def _swap(v: Array) -> None:
-    """The contact as seen from the other body."""
-    v[0], v[1], v[2], v[3] = v[2], v[3], v[0], v[1]
-    v[4], v[5], v[7], v[8] = -v[4], -v[5], -v[7], -v[8]
 
 
 @njit("void(float64[::1], float64[::1], float64[::1], float64[::1], float64, float64)", cache=True, nogil=True)
@@ -102,47 +96,64 @@ def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: 
     heavy[k, 6] += jn * length
 
 
-@njit("int64(int64, int64[:, ::1], float64[:, ::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], float64[::1], "
+@njit("int64(int64[::1], int64[::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], float64[::1], "
       "float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])",
       cache=True, nogil=True)
-def accumulate(n: int, bodies: IntArray, values: Array, addresses: IntArray, slots: IntArray, row: IntArray,
-               state: Array, law: Array, side: Array, limit: Array, sheet: Array, sums: Array, nodes: Array,
-               heavy: Array) -> int:
+def accumulate(header: IntArray, pairs: IntArray, layout: IntArray, addresses: IntArray, slots: IntArray, state: Array,
+               law: Array, side: Array, limit: Array, sheet: Array, sums: Array, nodes: Array, heavy: Array) -> int:
     """Add the contacts of one sub-step; ``addresses`` and ``slots`` (`friction.slot_table`) tell bodies apart.
 
-    ``sums`` (blocks, 7) see SUM_COLUMNS; ``nodes`` (m, 4): x, z of the nodes and the impulse on them; ``sheet`` =
-    (x, z of the sheet body's origin, its v_x, v_z, work done by the sheet on blocks, impulse x, z on it, moment);
-    ``side`` (2, blocks): y and v_y; ``law`` of the structure; ``heavy`` see HEAVY_COLUMNS and `_note_heavy`.
-    Returns the number of contacts with bodies that are neither block, sheet nor structure (must be 0).
+    ``header``, ``pairs`` and ``layout`` are those of `arbiters.ContactReader`; ``sums`` (blocks, 7) see SUM_COLUMNS;
+    ``nodes`` (m, 4): x, z of the nodes and the impulse on them; ``sheet`` = (x, z of the sheet body's origin, its
+    v_x, v_z, work done by the sheet on blocks, impulse x, z on it, moment); ``side`` (2, blocks): y and v_y; ``law``
+    of the structure; ``heavy`` see HEAVY_COLUMNS and `_note_heavy`. Returns the number of pairs with bodies that are
+    neither block, sheet nor structure (must be 0).
     """
-    pair = np.empty(2, np.int64)
-    strange, crushes = 0, limit[0] < np.inf
-    a, b, turn, first = UNKNOWN, UNKNOWN, False, False
+    pair, v, before_v = np.empty(2, np.int64), np.empty(9), np.empty(9)
+    strange, crushes, n, size = 0, limit[0] < np.inf, header[0], layout[11]
+    body_a, body_b, last, arbiter, turn = 0, 0, 0, 0, False
     for k in range(n):
-        v = values[k]
-        first = k == 0 or bodies[k - 1, 0] != bodies[k, 0] or bodies[k - 1, 1] != bodies[k, 1]
-        if first:
-            a, b = slot_of(bodies[k, 0], addresses, slots), slot_of(bodies[k, 1], addresses, slots)
-            strange += a == UNKNOWN or b == UNKNOWN
-            turn = a > b  # smaller slot first: structure and sheet before blocks
-            if turn:
-                a, b = b, a
-        if a == UNKNOWN:
+        before, before_turn, before_arbiter = last, turn, arbiter
+        arbiter = pairs[k]
+        a, b = integer(arbiter + layout[0]), integer(arbiter + layout[1])
+        if a != body_a or b != body_b:
+            before = 0
+        body_a, body_b = a, b
+        a, b = slot_of(body_a, addresses, slots), slot_of(body_b, addresses, slots)
+        if a == UNKNOWN or b == UNKNOWN:
+            strange += 1
             continue
+        turn = a > b  # smaller slot first: structure and sheet before blocks
         if turn:
-            _swap(v)
-        if a == STRUCTURE_SLOT:
-            _on_structure(v, law, state[row[b]], sums[b], side[0, b], side[1, b])
-        elif a == SHEET_SLOT:
-            _on_sheet(v, sheet, nodes)
-            sums[b, 5] += v[6]
-            sums[b, 6] += v[6]
-        else:
-            sums[a, 5] += v[6]
-            sums[b, 5] += v[6]
-        if crushes and (k + 1 == n or bodies[k + 1, 0] != bodies[k, 0] or bodies[k + 1, 1] != bodies[k, 1]):
-            if v[6] + (0.0 if first else values[k - 1, 6]) <= limit[2]:
+            a, b = b, a
+        start, count = integer(arbiter + layout[3]), short(arbiter + layout[2])
+        for c in range(count):
+            contact = start + c * size
+            push = real(contact + layout[9])
+            if a >= 0:
+                sums[a, 5] += push
+                sums[b, 5] += push
                 continue
-            pair[0], pair[1] = a, b
-            _note_heavy(pair, v if first else values[k - 1], v, limit, heavy)
+            read_contact(arbiter, contact, layout, turn, v)
+            if a == STRUCTURE_SLOT:
+                _on_structure(v, law, state[b], sums[b], side[0, b], side[1, b])
+            else:
+                _on_sheet(v, sheet, nodes)
+                sums[b, 5] += push
+                sums[b, 6] += push
+        last = start + (count - 1) * size
+        if not crushes:
+            continue
+        if count > 1:
+            before, before_turn, before_arbiter = last - size, turn, arbiter
+        push = real(last + layout[9]) + (real(before + layout[9]) if before != 0 else 0.0)
+        if push <= limit[2]:
+            continue
+        if k + 1 < n and integer(pairs[k + 1] + layout[0]) == body_a and integer(pairs[k + 1] + layout[1]) == body_b:
+            continue  # the same two bodies go on with other shapes
+        pair[0], pair[1] = a, b
+        read_contact(arbiter, last, layout, turn, v)
+        if before != 0:
+            read_contact(before_arbiter, before, layout, before_turn, before_v)
+        _note_heavy(pair, before_v if before != 0 else v, v, limit, heavy)
     return strange

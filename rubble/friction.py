@@ -20,19 +20,19 @@ import numpy as np
 from numba import carray, cfunc, njit
 from pymunk._chipmunk_cffi import ffi, lib
 
-from rubble.arbiters import ContactReader, note_contacts
+from rubble.arbiters import ContactReader, note_pair
 from rubble.geometry import Array
 from rubble.physics import RATE_DEPENDENT, RubblePhysics
-from rubble.pointers import OFFSETS, IntArray, offsets, pointer
+from rubble.pointers import OFFSETS, IntArray, integer, number, offsets, pointer, real, set_real
 
 ICE, STRUCTURE, SHEET = 1, 2, 3  #: collision types
 STRUCTURE_SLOT, SHEET_SLOT, UNKNOWN = -1, -2, -3  #: slots of the bodies that are no blocks
 CREEP = 1e-4  #: slip below which a contact counts as sticking in the plane [m/s]
 #: of a law: coefficient (negative: rate-dependent), 1 for a body of revolution, y of the section [m]
 LAW = 3
-#: header: address of the reader's header, of the law, length of the tables of bodies, addresses of (bodies, slots,
-#: rows), rows of the state table, its address, row of the sheet, addresses of (y, v_y) of the blocks, offsets
-_FIXED = 11
+#: header: address of the reader's header, of the law, length of the tables of bodies, addresses of (bodies, slots),
+#: rows of the state table, its address, row of the sheet, addresses of (y, v_y) of the blocks, offsets
+_FIXED = 10
 
 
 @njit("float64(float64)", cache=True, nogil=True)
@@ -91,38 +91,41 @@ def shares(law: Array, p: float, n_y: float, v_s: float, v_y: float) -> tuple[fl
 
 
 @cfunc("void(voidptr, voidptr, voidptr)", cache=True)
+def _set_constant(arbiter: Any, space: Any, header: Any) -> None:
+    """Pre-solve callback: a coefficient that does not depend on the motion, into the arbiter."""
+    h = number(header)
+    set_real(number(arbiter) + integer(h + 8 * 16), real(integer(h + 8)))
+
+
+@cfunc("void(voidptr, voidptr, voidptr)", cache=True)
 def _set_friction(arbiter: Any, space: Any, header: Any) -> None:
     """Pre-solve callback: friction of the pair into the arbiter."""
-    h = carray(header, 23, np.int64)
-    base = carray(arbiter, 8, np.uint8).ctypes.data
+    h = carray(header, 22, np.int64)
+    base = number(arbiter)
     law = carray(pointer(h[1]), 3, np.float64)
-    u = carray(pointer(base + h[17]), 1, np.float64)
-    if law[0] >= 0.0 and law[1] == 0.0:
-        u[0] = law[0]
-        return
     bodies, slots = carray(pointer(h[3]), h[2], np.int64), carray(pointer(h[4]), h[2], np.int64)
-    rows, state = carray(pointer(h[5]), h[2], np.int64), carray(pointer(h[7]), (h[6], 6), np.float64)
-    n = carray(pointer(base + h[15]), 2, np.float64)
-    c = carray(pointer(base + h[14]), 1, np.int64)[0]
+    state = carray(pointer(h[6]), (h[5], 6), np.float64)
+    nx, nz = real(base + h[14]), real(base + h[14] + 8)
+    c = integer(base + h[13])
     slip, x, n_x, block = 0.0, 0.0, 0.0, -1
     for side in range(2):
-        body = carray(pointer(base + h[11 + side]), 1, np.int64)[0]
-        slot, sign = slot_of(body, bodies, slots), 1.0 if side == 1 else -1.0
-        r = carray(pointer(c + h[18 + side]), 2, np.float64)
-        row = h[8] if slot == SHEET_SLOT else (rows[slot] if slot >= 0 else -1)
+        slot, sign = slot_of(integer(base + h[10 + side]), bodies, slots), 1.0 if side == 1 else -1.0
+        rx, rz = real(c + h[17 + side]), real(c + h[17 + side] + 8)
+        row = h[7] if slot == SHEET_SLOT else slot
         if row >= 0:
-            vx, vz = state[row, 3] - state[row, 5] * r[1], state[row, 4] + state[row, 5] * r[0]
-            slip += sign * (n[0] * vz - n[1] * vx)
+            vx, vz = state[row, 3] - state[row, 5] * rz, state[row, 4] + state[row, 5] * rx
+            slip += sign * (nx * vz - nz * vx)
         if slot == STRUCTURE_SLOT:
-            x, n_x = r[0], -sign * n[0]
+            x, n_x = rx, -sign * nx
         block = max(block, slot)
+    u = base + h[16]
     if law[1] == 0.0 or block < 0:
-        u[0] = law[0] if law[0] >= 0.0 else rate_dependent(slip)
+        set_real(u, law[0] if law[0] >= 0.0 else rate_dependent(slip))
         return
-    y, v_y = carray(pointer(h[9]), block + 1, np.float64)[block], carray(pointer(h[10]), block + 1, np.float64)[block]
+    y, v_y = real(h[8] + 8 * block), real(h[9] + 8 * block)
     p, n_y = tilt(x, n_x, law[2], law[1], y)
     mu, more, across = shares(law, p, n_y, slip, v_y)
-    u[0] = mu * more * np.sqrt(max(1.0 - across * across, 0.0))
+    set_real(u, mu * more * np.sqrt(max(1.0 - across * across, 0.0)))
 
 
 def law_of(coefficient: float | str, revolved: bool = False, y: float = 0.0) -> Array:
@@ -140,13 +143,14 @@ class PairFriction:
             header[0], header[1], header[_FIXED:] = reader.header.ctypes.data, law.ctypes.data, offsets()
         for pair, kind in (((ICE, ICE), 0), ((ICE, SHEET), 0), ((ICE, STRUCTURE), 1)):
             handler = lib.cpSpaceAddCollisionHandler(space._space, *pair)
-            handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", _set_friction.address)
-            handler.postSolveFunc = ffi.cast("cpCollisionPostSolveFunc", note_contacts.address)
+            law = (self.ice, self.structure)[kind]
+            set_law = _set_constant if law[0] >= 0.0 and law[1] == 0.0 else _set_friction
+            handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", set_law.address)
+            handler.postSolveFunc = ffi.cast("cpCollisionPostSolveFunc", note_pair.address)
             handler.userData = ffi.cast("void *", self._headers[kind].ctypes.data)
 
-    def watch(self, bodies: IntArray, slots: IntArray, rows: IntArray, state: Array, sheet_row: int,
-              side: Array) -> None:
+    def watch(self, bodies: IntArray, slots: IntArray, state: Array, sheet_row: int, side: Array) -> None:
         """Where the callback finds the motion of the bodies; ``side`` (2, blocks) y and v_y. The caller keeps them."""
         for header in self._headers:
-            header[2:_FIXED] = (len(bodies), bodies.ctypes.data, slots.ctypes.data, rows.ctypes.data, len(state),
-                                state.ctypes.data, sheet_row, side[0].ctypes.data, side[1].ctypes.data)
+            header[2:_FIXED] = (len(bodies), bodies.ctypes.data, slots.ctypes.data, len(state), state.ctypes.data,
+                                sheet_row, side[0].ctypes.data, side[1].ctypes.data)

@@ -1,16 +1,17 @@
-"""Memory of the installed pymunk as arrays inside compiled code: offsets that cffi reports, addresses of functions."""
+"""Memory of the installed pymunk in compiled code: where its fields stand, how they are read, written and called."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+import pymunk
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numpy.typing import NDArray
-from pymunk._chipmunk_cffi import ffi
+from pymunk._chipmunk_cffi import ffi, lib
 
 IntArray = NDArray[np.int64]
 
@@ -27,9 +28,35 @@ def offsets() -> IntArray:
     return np.array([*fields, ffi.sizeof(contact)], dtype=np.int64)
 
 
+def body_offsets() -> IntArray:
+    """Where a body keeps x, z, angle, v_x, v_z, omega, force x, z, torque [bytes].
+
+    cffi does not know the struct, so they are looked up in a body with known values.
+    """
+    known = np.array([0.5, -1.25, 0.375, 2.75, -3.5, 4.125, -5.25, 6.625, 7.875])
+    body = pymunk.Body(1.0, 1.0)
+    body.position, body.angle, body.velocity = (known[0], known[1]), known[2], (known[3], known[4])
+    body.angular_velocity, body.torque = known[5], known[8]
+    lib.cpBodySetForce(body._body, (known[6], known[7]))
+    memory = np.frombuffer(ffi.buffer(ffi.cast("char *", body._body), 8 * 18), np.float64)
+    found = [np.flatnonzero(memory == value) for value in known]
+    if any(len(at) == 0 for at in found):
+        raise RuntimeError(f"pymunk {pymunk.version} keeps its bodies in another way; install a version that is tested")
+    return np.array([8 * at[0] for at in found], dtype=np.int64)
+
+
 def address(pointer: Any) -> int:
     """A cffi pointer as a number."""
     return int(ffi.cast("intptr_t", pointer))
+
+
+def _number(typingctx: Any, pointer: Any) -> Any:
+    """A void pointer as an int64 address."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.ptrtoint(args[0], ir.IntType(64))
+
+    return types.int64(types.voidptr), codegen
 
 
 def _as_pointer(typingctx: Any, number: Any) -> Any:
@@ -39,6 +66,26 @@ def _as_pointer(typingctx: Any, number: Any) -> Any:
         return builder.inttoptr(args[0], cgutils.voidptr_t)
 
     return types.voidptr(types.int64), codegen
+
+
+def _reader(kind: Any, memory: Any) -> Any:
+    def intrinsic_of(typingctx: Any, number: Any) -> Any:
+        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            value = builder.load(builder.inttoptr(args[0], memory.as_pointer()))
+            return builder.sext(value, ir.IntType(64)) if memory == ir.IntType(32) else value
+
+        return kind(types.int64), codegen
+    return intrinsic_of
+
+
+def _writer(kind: Any, memory: Any) -> Any:
+    def intrinsic_of(typingctx: Any, number: Any, value: Any) -> Any:
+        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            builder.store(args[1], builder.inttoptr(args[0], memory.as_pointer()))
+            return context.get_dummy_value()
+
+        return types.void(types.int64, kind), codegen
+    return intrinsic_of
 
 
 def _call_step(typingctx: Any, function: Any, space: Any, dt: Any) -> Any:
@@ -53,18 +100,13 @@ def _call_step(typingctx: Any, function: Any, space: Any, dt: Any) -> Any:
     return types.void(types.int64, types.int64, types.float64), codegen
 
 
-def _call_each(typingctx: Any, function: Any, space: Any, callback: Any, data: Any) -> Any:
-    """function(space, callback, data) at an address, as cpSpaceEachBody."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        kind = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t] * 3)
-        target = builder.inttoptr(args[0], kind.as_pointer())
-        builder.call(target, [builder.inttoptr(a, cgutils.voidptr_t) for a in args[1:]])
-        return context.get_dummy_value()
-
-    return types.void(types.int64, types.int64, types.int64, types.int64), codegen
-
-
+number: Any = intrinsic(_number)
 pointer: Any = intrinsic(_as_pointer)
 step_space: Any = intrinsic(_call_step)
-for_each: Any = intrinsic(_call_each)
+#: value of an address
+real: Any = intrinsic(_reader(types.float64, ir.DoubleType()))
+integer: Any = intrinsic(_reader(types.int64, ir.IntType(64)))
+short: Any = intrinsic(_reader(types.int64, ir.IntType(32)))
+#: write a value to an address
+set_real: Any = intrinsic(_writer(types.float64, ir.DoubleType()))
+set_integer: Any = intrinsic(_writer(types.int64, ir.IntType(64)))

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pymunk
-from pymunk import batch
 
 from rubble.arbiters import ContactReader
 from rubble.block import Block
@@ -15,16 +14,14 @@ from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS
 from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction, slot_table
 from rubble.geometry import Array, contiguous, exposed_edges, nearest_edges, overlap_area
 from rubble.physics import RubblePhysics
-from rubble.pointers import IntArray, address
+from rubble.pointers import address, body_offsets
 from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
 from rubble.space import new_space
-from rubble.stepping import Calls, run
+from rubble.stepping import STEP, read_bodies, run
 from rubble.trim import cut_away
 from rubble.water import EDGE_COLUMNS, STATE_COLUMNS
 
-_F = batch.BodyFields
-_GET = _F.BODY_ID | _F.POSITION | _F.ANGLE | _F.VELOCITY | _F.ANGULAR_VELOCITY
-_SET = _F.FORCE | _F.TORQUE
+_BODY = body_offsets()
 HEAVY = 64  #: overloaded pairs kept in a window
 
 
@@ -52,7 +49,7 @@ class Section:
 
     def _connect(self) -> None:
         """What holds addresses: made anew after a snapshot has been loaded."""
-        self._reader, self._buffer, self._out = ContactReader(), batch.Buffer(), batch.Buffer()
+        self._reader, self._space = ContactReader(), address(self.space._space)
         self._friction = PairFriction(self.space, self.physics, self.revolved, self.y, self._reader)
         self.changed()
 
@@ -134,43 +131,26 @@ class Section:
         edges = [b.prism.edges for b in blocks]
         self._edges = np.ascontiguousarray(np.concatenate(edges) if edges else np.zeros((0, EDGE_COLUMNS)))
         self._offset = np.cumsum([0, *(len(e) for e in edges)], dtype=np.int64)
-        self._ids = [b.body.id for b in blocks]
         dead = [(b.thrust[0], b.thrust[1] - b.mass * g, b.thrust[2]) for b in blocks]
         self._dead = np.array(dead, dtype=np.float64).reshape(-1, 3)
         limit = self.physics.contact_strength * self.physics.substep, 2.0 * self.physics.slop
         widths = [b.prism.width for b in blocks]
         self._limit = np.array([*limit, limit[0] * limit[1] * min(widths, default=0.0), *widths])
-        bodies = [address(self.space.static_body._body), *(address(b.body._body) for b in blocks)]
-        slots = [STRUCTURE_SLOT, *range(len(blocks))]
-        if self.sheet is not None:
-            bodies, slots = [*bodies, address(self.sheet.body._body)], [*slots, SHEET_SLOT]
-        self._addresses, self._slots = slot_table(bodies, slots)
-        self._order_seen = np.zeros(0, np.uintp)
+        moving = [b.body for b in blocks] + ([self.sheet.body] if self.sheet is not None else [])
+        self._bodies = np.array([address(body._body) for body in moving], np.int64)
+        slots = [*range(len(blocks)), SHEET_SLOT][:len(moving)]
+        self._addresses, self._slots = slot_table([address(self.space.static_body._body), *self._bodies.tolist()],
+                                                  [STRUCTURE_SLOT, *slots])
         outlines = [b.prism.polygon for b in blocks]
         self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
         self.corners = np.cumsum([0, *map(len, outlines)], dtype=np.int64)
         self.moved = np.array([b.body.mass for b in blocks], np.float64)  #: mass with added mass [kg]
         self.side = np.zeros((2, len(blocks)))  #: y and v_y
         self.sums = np.zeros((len(blocks), SUM_COLUMNS))
-        rows = [(*b.body.position, b.body.angle, *b.body.velocity, b.body.angular_velocity) for b in blocks]
-        self.state = np.array(rows, dtype=np.float64).reshape(-1, STATE_COLUMNS)  #: of the blocks, in their order
-
-    def _read_state(self) -> Array:
-        """State rows of all bodies in pymunk's own order; the map from blocks to rows follows that order."""
-        self._buffer.clear()
-        batch.get_space_bodies(self.space, _GET, self._buffer)
-        order = np.frombuffer(self._buffer.int_buf(), np.uintp)
-        if not np.array_equal(order, self._order_seen):
-            self._order_seen = order.copy()
-            row = {int(n): i for i, n in enumerate(order)}
-            self._row: IntArray = np.array([row[n] for n in self._ids], dtype=np.int64)
-            self._sheet_row = row[self.sheet.body.id] if self.sheet is not None else -1
-            self._force = np.zeros((len(order), 3))
-            self._out.set_float_buf(self._force)
-            self._calls = Calls(self.space, self._buffer, _GET, self._out, _SET)
-            self._state = np.frombuffer(self._buffer.float_buf(), np.float64).reshape(-1, STATE_COLUMNS)
-            self._friction.watch(self._addresses, self._slots, self._row, self._state, self._sheet_row, self.side)
-        return self._state
+        self._state = np.zeros((len(moving), STATE_COLUMNS))  #: of blocks and sheet, current inside the kernels
+        read_bodies(self._bodies, _BODY, self._state)
+        self.state = self._state[:len(blocks)].copy()  #: of the blocks, in their order
+        self._friction.watch(self._addresses, self._slots, self._state, len(blocks), self.side)
 
     # ---- motion -----------------------------------------------------------------------------------------------
 
@@ -187,21 +167,21 @@ class Section:
         done = 0
         while done < n_substeps:
             done += self._run(n_substeps - done)
-        self.state = self._read_state()[self._row]
+        self.state = self._state[:len(self.blocks)].copy()
         for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
             block.flooded = share
 
     def _run(self, n: int) -> int:
-        """Up to ``n`` sub-steps in one compiled call; fewer if the table of contacts must grow. Returns how many."""
-        state, reader, sheet = self._read_state(), self._reader, self.sheet
+        """Up to ``n`` sub-steps in one compiled call; fewer if the list of pairs must grow. Returns how many."""
+        reader, sheet = self._reader, self.sheet
         spring, driver, nodes = (sheet.spring, sheet.driver, sheet.nodes) if sheet else (_NO, _NO, _NO_NODES)
         self.space._bodies_to_check.clear()  # masses are positive by construction
-        done = run(n, self.physics.substep, self._calls.table, reader.header, state, self._force, self._row,
-                   self._edges, self._offset, self._dead, self.water, self._flooded, self.losses, self._sheet_row,
-                   spring, driver, reader.bodies, reader.values, self._addresses, self._slots,
-                   self._friction.structure, self.side, self._limit, self.sheet_sums, self.sums, nodes, self.heavy)
+        done = run(n, self.physics.substep, STEP, self._space, self._bodies, _BODY, self._state, self._edges,
+                   self._offset, self._dead, self.water, self._flooded, self.losses, spring, driver, reader.header,
+                   reader.pairs, reader.layout, self._addresses, self._slots, self._friction.structure, self.side,
+                   self._limit, self.sheet_sums, self.sums, nodes, self.heavy)
         if done < 0:
-            what = (f"{reader.header[0]} contacts at once, room for {reader.capacity}" if done == -1 else
+            what = (f"{reader.header[0]} pairs in contact at once, room for {reader.capacity}" if done == -1 else
                     "contact with a body that is no block, sheet or structure")
             raise RuntimeError(f"section at y = {self.y:g} m: {what}; take out blocks that overlap")
         if 2 * reader.header[0] > reader.capacity:
@@ -214,5 +194,4 @@ class Section:
 
 
 _NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
-_ADDRESSES = {"_reader", "_buffer", "_out", "_friction", "_calls", "_row", "_force", "_addresses", "_slots",
-              "_order_seen", "_ids", "_state"}
+_ADDRESSES = {"_reader", "_space", "_friction", "_bodies", "_addresses", "_slots", "_state"}

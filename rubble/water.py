@@ -24,22 +24,21 @@ import numpy as np
 from numba import njit
 
 from rubble.geometry import Array
-from rubble.pointers import IntArray
+from rubble.pointers import IntArray, set_real
 
 #: columns of an edge table: x0, z0, x1, z1 in the body frame [m], width [m], 1 for an edge of the block's top; water
 #: lies to the right of 0 -> 1
 EDGE_COLUMNS = 6
-#: columns of a state row: x, z, angle, v_x, v_z, omega, as pymunk.batch delivers them
+#: columns of a state row: x, z, angle, v_x, v_z, omega
 STATE_COLUMNS = 6
 
 GAUSS_X = (-np.sqrt(0.15), 0.0, np.sqrt(0.15))  # on -1/2 ... 1/2
 GAUSS_W = (5 / 18, 8 / 18, 5 / 18)
 
 
-@njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64)", cache=True, nogil=True)
-def _wetted(ax: float, az: float, bx: float, bz: float, z: float) -> tuple[float, float, float, float]:
-    """The part of an edge (relative to the centre at height z) below still water; nothing: both ends the same."""
-    da, db = z + az, z + bz
+@njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
+def _wetted(ax: float, az: float, bx: float, bz: float, da: float, db: float) -> tuple[float, float, float, float]:
+    """The part of an edge below still water, its ends at heights da and db; nothing: both ends the same."""
     if da >= 0.0 and db >= 0.0:
         return ax, az, ax, az
     if da > 0.0:
@@ -55,100 +54,119 @@ def _wetted(ax: float, az: float, bx: float, bz: float, z: float) -> tuple[float
 def _pressure(ax: float, az: float, bx: float, bz: float, width: float, z: float, rho_g: float,
               ) -> tuple[float, float, float]:
     """Force and moment of the water pressure on an edge, exact for a straight edge."""
-    ax, az, bx, bz = _wetted(ax, az, bx, bz, z)
+    ax, az, bx, bz = _wetted(ax, az, bx, bz, z + az, z + bz)
     lx, lz = bx - ax, bz - az
     mean, tilt = -rho_g * (z + (az + bz) / 2), -rho_g * lz / 12  # pressure: mean, and its first moment
     mx, mz = (ax + bx) / 2, (az + bz) / 2
     return -width * mean * lz, width * mean * lx, width * (mean * (mx * lx + mz * lz) + tilt * (lx * lx + lz * lz))
 
 
-@njit("UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64[::1], float64)", cache=True,
-      nogil=True)
-def _lacking(ax: float, az: float, bx: float, bz: float, width: float, z: float, water: Array, share: float,
-             ) -> tuple[float, float, float]:
-    """What an edge of the top carries less (share, level) than if it were flooded: force and moment, reversed."""
-    full_x, full_z, full_y = _pressure(ax, az, bx, bz, width, z, water[0])
-    fx, fz, my = _pressure(ax, az, bx, bz, width * share, z - water[5], water[0])
-    return fx - full_x, fz - full_z, my - full_y
+@njit("float64(float64[:, ::1], int64, float64, float64, float64, float64, float64[::1], float64, float64, float64)",
+      cache=True, nogil=True)
+def _lacking(edges: Array, e: int, z: float, c: float, s: float, share: float, water: Array, vx: float, vz: float,
+             om: float) -> float:
+    """Power of what an edge of the top carries less (share, level) than if it were flooded, reversed."""
+    ax, az = c * edges[e, 0] - s * edges[e, 1], s * edges[e, 0] + c * edges[e, 1]
+    bx, bz = c * edges[e, 2] - s * edges[e, 3], s * edges[e, 2] + c * edges[e, 3]
+    full_x, full_z, full_y = _pressure(ax, az, bx, bz, edges[e, 4], z, water[0])
+    fx, fz, my = _pressure(ax, az, bx, bz, edges[e, 4] * share, z - water[5], water[0])
+    return (fx - full_x) * vx + (fz - full_z) * vz + (my - full_y) * om
 
 
-@njit("void(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64[::1], "
-      "float64[::1])", cache=True, nogil=True)
-def _edge_force(ax: float, az: float, bx: float, bz: float, width: float, z: float, vx: float, vz: float, om: float,
-                water: Array, out: Array) -> None:
-    """Add pressure and drag on one edge, whose water stands at height 0 when the centre stands at z."""
-    ax, az, bx, bz = _wetted(ax, az, bx, bz, z)
+@njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, "
+      "float64, float64[::1])", cache=True, nogil=True, error_model="numpy")
+def _edge_force(ax: float, az: float, bx: float, bz: float, width: float, z: float, c: float, s: float, vx: float,
+                vz: float, om: float, water: Array) -> tuple[float, float, float, float]:
+    """Pressure and drag on one edge, all in the body frame, with cosine and sine of its angle: force, moment, power of
+    drag. The water stands at height 0 when the centre stands at z.
+
+    Along an edge of a rigid body u.t is constant and u.n linear, so the integrals are moments of u.n.
+    """
+    da, db = z + s * ax + c * az, z + s * bx + c * bz
+    if da >= 0.0 and db >= 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    if da > 0.0 or db > 0.0:
+        ax, az, bx, bz = _wetted(ax, az, bx, bz, da, db)
     lx, lz = bx - ax, bz - az
     length = np.sqrt(lx * lx + lz * lz)
     if length == 0.0:
-        return
-    mean, tilt = -water[0] * (z + (az + bz) / 2), -water[0] * lz / 12
+        return 0.0, 0.0, 0.0, 0.0
     tx, tz, mx, mz = lx / length, lz / length, (ax + bx) / 2, (az + bz) / 2
-    nx, nz = tz, -tx
-    out[0] -= width * mean * lz
-    out[1] += width * mean * lx
-    out[2] += width * (mean * (mx * lx + mz * lz) + tilt * length * length)
-    for q in range(3):  # Gauss-Legendre, exact to fifth order
-        xi, weight = GAUSS_X[q], GAUSS_W[q] * width * length * water[1]
-        px, pz = mx + xi * lx, mz + xi * lz
-        ux, uz = vx - om * pz, vz + om * px
-        un, ut = ux * nx + uz * nz, ux * tx + uz * tz
-        k, kt = weight * water[2] * max(un, 0.0), weight * water[3] * abs(ut) * ut
-        fx, fz = -k * ux - kt * tx, -k * uz - kt * tz
-        out[0] += fx
-        out[1] += fz
-        out[2] += px * fz - pz * fx
-        out[3] += fx * ux + fz * uz
+    area, along = width * length, mx * tx + mz * tz
+    mean, tilt = -water[0] * (z + s * mx + c * mz), -water[0] * (s * lx + c * lz) / 12
+    ux, uz = vx - om * mz, vz + om * mx
+    ut, un = ux * tx + uz * tz, ux * tz - uz * tx
+    normal, tangent, couple = -area * mean, -area * water[1] * water[3] * abs(ut) * ut, area * length * tilt
+    power, half = tangent * ut, om * length
+    if un > -0.5 * abs(half):  # some of the edge may move into the water
+        first, second, third, turn = 0.0, 0.0, 0.0, 0.0
+        for q in range(3):  # Gauss-Legendre, exact to fifth order
+            u = max(un - GAUSS_X[q] * half, 0.0)
+            w = GAUSS_W[q] * u
+            first += w
+            second += w * u
+            third += w * u * u
+            turn += GAUSS_X[q] * w * u
+        k = area * water[1] * water[2]
+        normal -= k * second
+        tangent -= k * first * ut
+        couple += k * length * turn
+        power -= k * (first * ut * ut + third)
+    return (normal * tz + tangent * tx, -normal * tx + tangent * tz,
+            couple - normal * along + tangent * (mx * tz - mz * tx), power)
 
 
-@njit("float64(float64[:, ::1], float64[::1], float64, float64[::1], float64[::1])", cache=True, nogil=True)
-def block_force(edges: Array, water: Array, share: float, state: Array, out: Array) -> float:
-    """Water force on one block: out = (Fx, Fz, moment about the centre of mass, drag power, power of the head that
-    its top lacks) [N, N, N m, W, W]; returns the height of the lowest point of its top [m].
+@njit("float64(float64[:, ::1], int64, int64, float64[::1], float64, float64[:, ::1], int64, float64[::1])", cache=True,
+      nogil=True)
+def block_force(edges: Array, start: int, end: int, water: Array, share: float, state: Array, i: int, out: Array,
+                ) -> float:
+    """Water force on the block in row ``i`` of ``state`` with the edges from ``start`` to ``end``: out = (Fx, Fz,
+    moment about the centre of mass, drag power, power of the head that its top lacks) [N, N, N m, W, W]; returns the
+    height of the lowest point of its top [m].
 
     ``water`` = (rho_w g, rho_w / 2, C_d, C_f, time by which the pose is advanced, level on the tops, filling rate);
     the top carries ``share`` of the head below that level, every other edge the head below z = 0.
     """
-    vx, vz, om = state[3], state[4], state[5]
-    z, angle = state[1] + water[4] * vz, state[2] + water[4] * om
+    om = state[i, 5]
+    z, angle = state[i, 1] + water[4] * state[i, 4], state[i, 2] + water[4] * om
     c, s = np.cos(angle), np.sin(angle)
-    out[:] = 0.0
-    lowest = np.inf
-    for e in range(edges.shape[0]):
-        ax, az = c * edges[e, 0] - s * edges[e, 1], s * edges[e, 0] + c * edges[e, 1]
-        bx, bz = c * edges[e, 2] - s * edges[e, 3], s * edges[e, 2] + c * edges[e, 3]
+    vx, vz = c * state[i, 3] + s * state[i, 4], c * state[i, 4] - s * state[i, 3]
+    fx, fz, moment, power, lack, lowest = 0.0, 0.0, 0.0, 0.0, 0.0, np.inf
+    for e in range(start, end):
+        width, level = edges[e, 4], z
         if edges[e, 5] > 0.0:
-            lowest = min(lowest, z + az, z + bz)
+            lowest = min(lowest, z + s * edges[e, 0] + c * edges[e, 1], z + s * edges[e, 2] + c * edges[e, 3])
             if water[5] < 0.0 or share < 1.0:
-                _edge_force(ax, az, bx, bz, edges[e, 4] * share, z - water[5], vx, vz, om, water, out)
-                fx, fz, my = _lacking(ax, az, bx, bz, edges[e, 4], z, water, share)
-                out[4] += fx * vx + fz * vz + my * om
-                continue
-        _edge_force(ax, az, bx, bz, edges[e, 4], z, vx, vz, om, water, out)
+                lack += _lacking(edges, e, z, c, s, share, water, state[i, 3], state[i, 4], om)
+                width, level = width * share, z - water[5]
+        gx, gz, my, drag = _edge_force(edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], width, level, c, s, vx, vz,
+                                       om, water)
+        fx, fz, moment, power = fx + gx, fz + gz, moment + my, power + drag
+    out[0], out[1], out[2], out[3], out[4] = c * fx - s * fz, s * fx + c * fz, moment, power, lack
     return lowest
 
 
-@njit("void(float64[:, ::1], int64[::1], float64[:, ::1], float64[::1], float64[::1], int64[::1], float64[:, ::1], "
-      "float64[:, ::1], float64[::1])", cache=True, nogil=True)
-def apply_water(edges: Array, offset: IntArray, dead: Array, water: Array, flooded: Array, row: IntArray,
-                state: Array, force: Array, work: Array) -> None:
-    """Dead load, buoyancy and drag of all blocks of a section, written to their rows of ``force`` (Fx, Fz, moment).
+@njit("void(float64[:, ::1], int64[::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], int64[::1], "
+      "int64[::1], float64[::1])", cache=True, nogil=True)
+def apply_water(edges: Array, offset: IntArray, dead: Array, water: Array, flooded: Array, state: Array,
+                bodies: IntArray, layout: IntArray, work: Array) -> None:
+    """Dead load, buoyancy and drag of all blocks of a section, written into their pymunk bodies.
 
-    Block i owns ``edges[offset[i]:offset[i + 1]]`` and stands in row ``row[i]`` of ``state``; ``dead`` (blocks, 3) is
-    the weight and any constant thrust [N, N, N m];
-    ``water`` as in `block_force`, its time is the sub-step; ``flooded`` is the share of the head on each top, which
-    grows here. ``work`` collects the energy lost to drag [J], the impulse of all these forces in x and z [N s], and
-    the work that dry tops do [J].
+    Block i owns ``edges[offset[i]:offset[i + 1]]``, stands in row i of ``state`` and at the address ``bodies[i]`` with
+    the fields of ``layout`` (`pointers.body_offsets`); ``dead`` (blocks, 3) is the weight and any constant thrust
+    [N, N, N m]; ``water`` as in `block_force`, its time is the sub-step; ``flooded`` is the share of the head on each
+    top, which grows here. ``work`` collects the energy lost to drag [J], the impulse of all these forces in x and z
+    [N s], and the work that dry tops do [J].
     """
     out = np.empty(5)
-    for i in range(row.shape[0]):
-        own = edges[offset[i]:offset[i + 1]]
-        lowest = block_force(own, water, flooded[i], state[row[i]], out)
+    for i in range(dead.shape[0]):
+        lowest = block_force(edges, offset[i], offset[i + 1], water, flooded[i], state, i, out)
         for k in range(3):
-            force[row[i], k] = out[k] + dead[i, k]
+            out[k] += dead[i, k]
+            set_real(bodies[i] + layout[6 + k], out[k])
         work[0] -= out[3] * water[4]
-        work[1] += force[row[i], 0] * water[4]
-        work[2] += force[row[i], 1] * water[4]
+        work[1] += out[0] * water[4]
+        work[2] += out[1] * water[4]
         work[3] += out[4] * water[4]
         if lowest < 0.0:
             flooded[i] = min(1.0, flooded[i] + water[4] * water[6])

@@ -156,9 +156,9 @@ def test_bad_calls_are_refused(call, words):
         call(RubbleLayer(PHYSICS, WIDTH))
 
 
-def test_a_table_of_contacts_that_must_grow_changes_no_bit():
+def test_a_list_of_pairs_that_must_grow_changes_no_bit():
     small, large = filled(), filled()
     for section in small.sections.values():
-        section._reader.reserve(40)
+        section._reader.reserve(24)
     assert picture(drive(small, 40)) == picture(drive(large, 40))
-    assert any(s._reader.capacity > 40 for s in small.sections.values())
+    assert any(s._reader.capacity > 24 for s in small.sections.values())
