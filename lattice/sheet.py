@@ -50,8 +50,6 @@ class LongStep:
     served: int = 0
     contact: Array = field(default_factory=lambda: np.empty((0, 3)))  #: force at the last window's end
     work: float = 0.0  #: of the contact in the windows served, by the trapezoidal rule [J]
-    damping: float = 0.0  #: loss in them, likewise [J]
-    power: float = 0.0  #: loss at the last window's end [W]
 
 
 class Sheet:
@@ -108,21 +106,14 @@ class Sheet:
             return None
         force = contact.evaluate(t + self.dt, edge_displacement(state, contact.nodes))[0]
         out = Outcome(0.5 * (plan.contact + force), force, parts=self.parts)
-        self._book_served(plan, state, out.contact_mean, contact.nodes)
+        way = edge_displacement(state, contact.nodes) - edge_displacement(self.state, contact.nodes)
+        plan.work += float((out.contact_mean * way).sum())
         self.state, self.utilisation = state, utilisation
         plan.contact, plan.served = force, plan.served + 1
         if plan.served == plan.windows:
             self.energy.book_step(plan.step, force_u, force_q, contact.nodes, self.live_cells, self.present)
             self._long = None
         return out
-
-    def _book_served(self, plan: LongStep, state: State, force: Array, nodes: IntArray) -> None:
-        """Work and loss of a served window, for the case that the step is given up later."""
-        way = edge_displacement(state, nodes) - edge_displacement(self.state, nodes)
-        plan.work += float((force * way).sum())
-        power = self.energy.loss_rate(state, self.live_cells, self.present)
-        plan.damping += 0.5 * self.dt * (plan.power + power)
-        plan.power = power
 
     def _take_long_step(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact) -> bool:
         if self._wait > 0 or self._longest == 1:
@@ -133,15 +124,17 @@ class Sheet:
             self._wait, self._windows = self._windows, max(self._windows // 2, 2)
             return False
         start = contact.evaluate(t, edge_displacement(self.state, contact.nodes))[0]
-        power = self.energy.loss_rate(self.state, self.live_cells, self.present)
-        self._long = LongStep(step, self._windows, contact=start, power=power)
+        self._long = LongStep(step, self._windows, contact=start)
         self._windows = min(2 * self._windows, self._longest)
         return True
 
     def _drop_long_step(self) -> None:
         """Goes on from the last window served."""
-        if self._long is not None:
-            self.energy.book_served(self._long.work, self._long.damping, self.state, self.live_cells, self.present)
+        if (plan := self._long) is not None:
+            loss = [self.energy.loss_rate(plan.step.at(k / plan.windows), self.live_cells, self.present)
+                    for k in range(plan.served + 1)]
+            damping = self.dt * (sum(loss) - 0.5 * (loss[0] + loss[-1]))
+            self.energy.book_served(plan.work, damping, self.state, self.live_cells, self.present)
             self._long, self._windows = None, min(2, self._longest)
 
     # ---- one window -------------------------------------------------------------------------------------------
