@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, cos, sin
 
 import numpy as np
@@ -10,10 +10,9 @@ import pymunk
 
 from rubble.friction import ICE
 from rubble.geometry import Array, clip, contiguous, is_convex, moments, place
+from rubble.phases import ROTATING
 from rubble.physics import RubblePhysics
 from rubble.prism import inertia, strips, wetted_edges
-
-ROTATING, SLIDING = 1, 2  #: phases of a block, the numbers of `coupling.interface.Phase`
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +42,30 @@ class Block:
     body: pymunk.Body  #: carries mass + added mass
     shape: pymunk.Poly
     prism: Prism
-    y: float
-    v_y: float = 0.0
+    across: Array  #: (2,) y and v_y; of a block in a section a view of the section's table
     aligned: bool = False  #: its long axis has once aligned with the slope
     phase: int = ROTATING
     flooded: float = 1.0  #: share of its head of water that the top carries
-    load: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: mean force on the structure over the last window [N]
+    load: Array = field(default_factory=lambda: np.zeros(3))  #: mean force on the structure over the last window [N]
     thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: constant force and moment beside the weight [N, N, N m]
+
+    @property
+    def y(self) -> float:
+        """Place across the sections [m]."""
+        return float(self.across[0])
+
+    @y.setter
+    def y(self, value: float) -> None:
+        self.across[0] = value
+
+    @property
+    def v_y(self) -> float:
+        """Speed across the sections [m/s]."""
+        return float(self.across[1])
+
+    @v_y.setter
+    def v_y(self, value: float) -> None:
+        self.across[1] = value
 
     @property
     def mass(self) -> float:
@@ -73,7 +89,7 @@ def make_block(number: int, physics: RubblePhysics, polygon: Array, cuts: Array,
     body.angle, body.velocity, body.angular_velocity = angle, (float(velocity[0]), float(velocity[1])), float(omega)
     shape = pymunk.Poly(body, [(float(a), float(b)) for a, b in prism.polygon])
     shape.elasticity, shape.collision_type = physics.restitution**0.5, ICE
-    return Block(number, fragment, body, shape, prism, y, flooded=flooded)
+    return Block(number, fragment, body, shape, prism, np.array([y, 0.0]), flooded=flooded)
 
 
 def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[Prism, tuple[float, float]]:

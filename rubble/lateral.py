@@ -13,16 +13,15 @@ from rubble.block import Block
 from rubble.geometry import Array, IntArray, moments, place, submerged
 
 
-@njit("float64[:, ::1](float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], "
+@njit("void(float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64[:, ::1], "
       "float64[:, ::1], float64[:, ::1])", cache=True, nogil=True)
 def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, offset: IntArray, mass: Array,
-               state: Array, sums: Array, side: Array) -> Array:
-    """Move the blocks of a section across by one window; returns the mean force on the structure (n, 3) [N].
+               state: Array, sums: Array, side: Array, load: Array) -> None:
+    """Move the blocks of a section across by one window; ``load`` (n, 3) becomes the mean force on the structure [N].
 
     ``sums`` as in `contacts`; ``side`` (2, n): y and v_y, changed here; ``mass`` with added mass; ``half_rho_cd`` =
     rho_w C_d / 2. Backward Euler for friction and drag, so neither turns the motion around.
     """
-    load = np.zeros((mass.shape[0], 3))
     for i in range(mass.shape[0]):
         load[i, 0], load[i, 1], load[i, 2] = sums[i, 0] / dt, -sums[i, 2] / dt, sums[i, 1] / dt
         free = side[1, i] + sums[i, 2] / mass[i]
@@ -37,7 +36,18 @@ def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, of
         wet = moments(submerged(place(polygons[offset[i]:offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0)))
         side[1, i] = v / (1.0 + dt * half_rho_cd * wet[0] * abs(v) / mass[i])
         side[0, i] += dt * side[1, i]
-    return load
+
+
+@njit("bool_(float64[:, ::1], float64[:, ::1], float64, float64, float64, float64, float64, float64)", cache=True,
+      nogil=True)
+def all_inside(state: Array, side: Array, y: float, half: float, x_min: float, x_max: float, y_max: float,
+               depth: float) -> bool:
+    """Whether all blocks are within the section's half width about y and within the domain (`layer.Domain`)."""
+    inside = True
+    for i in range(state.shape[0]):
+        x, z, at = state[i, 0], state[i, 1], side[0, i]
+        inside = inside and x_min <= x <= x_max and abs(at) <= y_max and z >= -depth and abs(at - y) <= half
+    return inside
 
 
 def push(block: Block, neighbour: Block | None) -> None:

@@ -12,17 +12,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from math import floor, inf, isfinite, pi
+from math import floor, inf, isfinite
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rubble import table
-from rubble.block import ROTATING, SLIDING, Block, make_block
+from rubble.block import Block, make_block
 from rubble.crushing import crush
 from rubble.geometry import Array, IntArray
-from rubble.lateral import push, side_steps
+from rubble.lateral import all_inside, push, side_steps
 from rubble.physics import RATE_DEPENDENT, RubblePhysics
 from rubble.section import Section
 
@@ -163,10 +163,13 @@ class RubbleLayer:
         self.time += self._window
         for section in self.sections.values():
             self._after_window(section)
+        d, half = self.domain, 0.5 * self.pitch
         for key, section in list(self.sections.items()):
+            if all_inside(section.state, section.side, section.y, half, d.x_min, d.x_max, d.y_max, d.depth):
+                continue
             x, z, y = section.state[:, 0], section.state[:, 1], section.side[0]
             gone = ~self.domain.holds(x, y, z)
-            off = gone | (np.abs(y - section.y) > 0.5 * self.pitch)
+            off = gone | (np.abs(y - section.y) > half)
             for block, out in [(section.blocks[i], gone[i]) for i in np.flatnonzero(off)]:
                 if out:
                     self._clear(section, block)
@@ -183,31 +186,13 @@ class RubbleLayer:
                                "is not finite; shorten rubble.substep")
         p, side = self.physics, section.side
         mu = 0.1 if p.mu_ice_ice == RATE_DEPENDENT else float(p.mu_ice_ice)  # across: sliding, the upper end of speed
-        load = side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, section.polygons, section.corners,
-                          section.moved, section.state, section.sums, side)
-        for block, (y, v_y), (fx, fy, fz) in zip(section.blocks, side.T.tolist(), load.tolist(), strict=True):
-            block.load = fx, fy, fz
-            if not self.hold_across:
-                block.y, block.v_y = y, v_y
-        self._update_phases(section)
+        side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, section.polygons, section.corners, section.moved,
+                   section.state, section.sums, side.copy() if self.hold_across else side, section.load)
+        section.update_phases()
         if section.heavy[0, 0] > 0:
             mass, momentum = crush(section, self._window)
             self.crushed_mass += mass
             self.crushed_momentum += momentum
-
-    def _update_phases(self, section: Section) -> None:
-        """Rotating until the long axis has once aligned with a slope near by and has left the sheet; then sliding."""
-        rotating = [i for i, block in enumerate(section.blocks) if block.phase == ROTATING]
-        if not rotating or len(section.slopes) == 0:
-            return  # without a slope nothing aligns
-        slopes = section.nearest_slopes()
-        for i in rotating:
-            block, touching = section.blocks[i], section.sums[i, 6] > 0
-            if not block.aligned and slopes[i, 1] <= block.prism.reach + self.physics.thickness:
-                period = pi if block.prism.slender else pi / 2
-                turn = block.prism.long_axis + section.state[i, 2] - slopes[i, 0]
-                block.aligned = bool(abs((turn + period / 2) % period - period / 2) <= self.physics.align_tolerance)
-            block.phase = SLIDING if block.aligned and not touching else ROTATING
 
     def _cross(self, key: int, section: Section, block: Block, step: int) -> None:
         """Hand a block to the section that it has moved into if there is room."""

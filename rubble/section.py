@@ -13,6 +13,7 @@ from rubble.block import Block
 from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS
 from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction, slot_table
 from rubble.geometry import Array, contiguous, exposed_edges, nearest_edges, overlap_area
+from rubble.phases import ROTATING, update_phases
 from rubble.physics import RubblePhysics
 from rubble.pointers import address, body_offsets
 from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
@@ -145,7 +146,16 @@ class Section:
         self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
         self.corners = np.cumsum([0, *map(len, outlines)], dtype=np.int64)
         self.moved = np.array([b.body.mass for b in blocks], np.float64)  #: mass with added mass [kg]
-        self.side = np.zeros((2, len(blocks)))  #: y and v_y
+        #: y and v_y (2, n), and mean force on the structure over the last window (n, 3) [N]; the blocks have views
+        self.side = np.ascontiguousarray(np.array([b.across for b in blocks], np.float64).reshape(-1, 2).T)
+        self.load = np.array([b.load for b in blocks], np.float64).reshape(-1, 3)
+        for i, block in enumerate(blocks):
+            block.across, block.load = self.side[:, i], self.load[i]
+        self._flooded = np.array([b.flooded for b in blocks], np.float64)
+        #: see `phases.update_phases`
+        self.axes = np.array([(b.prism.reach + self.physics.thickness, b.prism.long_axis,
+                               np.pi if b.prism.slender else np.pi / 2) for b in blocks], np.float64).reshape(-1, 3)
+        self.status = np.array([(b.aligned, b.phase) for b in blocks], np.int64).reshape(-1, 2)
         self.sums = np.zeros((len(blocks), SUM_COLUMNS))
         self._state = np.zeros((len(moving), STATE_COLUMNS))  #: of blocks and sheet, current inside the kernels
         read_bodies(self._bodies, _BODY, self._state)
@@ -162,14 +172,13 @@ class Section:
             self.sheet.nodes[:, 2:] = 0.0
         if not self.blocks and self.sheet is None:
             return
-        self.side[0], self.side[1] = [b.y for b in self.blocks], [b.v_y for b in self.blocks]
-        self._flooded = np.array([b.flooded for b in self.blocks])
         done = 0
         while done < n_substeps:
             done += self._run(n_substeps - done)
         self.state = self._state[:len(self.blocks)].copy()
-        for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
-            block.flooded = share
+        if self.physics.filling_rate > 0.0:
+            for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
+                block.flooded = share
 
     def _run(self, n: int) -> int:
         """Up to ``n`` sub-steps in one compiled call; fewer if the list of pairs must grow. Returns how many."""
@@ -188,9 +197,14 @@ class Section:
             reader.reserve(4 * reader.capacity)
         return done
 
-    def nearest_slopes(self) -> Array:
-        """Angle [rad] and distance [m] of the face that meets the drift and is nearest to each block (n, 2); or nan."""
-        return nearest_edges(self.slopes, self.state) if len(self.slopes) else np.full((len(self.blocks), 2), np.nan)
+    def update_phases(self) -> None:
+        """Phases of the blocks after a window, see `phases`."""
+        if len(self.slopes) == 0 or not (self.status[:, 1] == ROTATING).any():
+            return  # without a slope nothing aligns
+        slopes = nearest_edges(self.slopes, self.state)
+        if update_phases(slopes, self.axes, self.state, self.sums, self.physics.align_tolerance, self.status):
+            for block, (aligned, phase) in zip(self.blocks, self.status.tolist(), strict=True):
+                block.aligned, block.phase = bool(aligned), phase
 
 
 _NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))

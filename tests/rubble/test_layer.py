@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rubble.block import ROTATING, SLIDING
 from rubble.geometry import moments, place
 from rubble.layer import Domain, RubbleLayer
+from rubble.phases import ROTATING, SLIDING
 
 SCENE = spec_from_file_location("cone_scene", Path(__file__).with_name("cone_scene.py"))
 scene = module_from_spec(SCENE)
