@@ -20,7 +20,7 @@ class Prism:
     """What follows from a block's outline and its strips; body frame, about the centre of mass."""
 
     polygon: Array  #: (k, 2) outline, counter-clockwise
-    edges: Array  #: (e, 6) wetted edges, see `water`
+    edges: Array  #: (e, 8) wetted edges, see `water`
     mass: float  #: true mass [kg]
     inertia: float  #: true moment of inertia about the y axis [kg m^2]
     width: float  #: mean extent along y [m]

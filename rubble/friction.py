@@ -27,6 +27,7 @@ from rubble.pointers import OFFSETS, IntArray, integer, number, offsets, pointer
 
 ICE, STRUCTURE, SHEET = 1, 2, 3  #: collision types
 STRUCTURE_SLOT, SHEET_SLOT, UNKNOWN = -1, -2, -3  #: slots of the bodies that are no blocks
+_SPREAD = 0x1E3779B97F4A7C15  #: addresses at regular distances do not fall together in the hash table
 CREEP = 1e-4  #: slip below which a contact counts as sticking in the plane [m/s]
 #: of a law: coefficient (negative: rate-dependent), 1 for a body of revolution, y of the section [m]
 LAW = 3
@@ -41,11 +42,11 @@ def rate_dependent(v: float) -> float:
     return 0.7 - 0.15 * np.log10(min(max(abs(v), 1e-6), 1e-2) / 1e-6)
 
 
-@njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True)
+@njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True, inline="always")
 def slot_of(body: int, bodies: IntArray, slots: IntArray) -> int:
     """Slot of a body by its address, in the tables of `slot_table`."""
     mask = bodies.shape[0] - 1
-    i = (body >> 4) & mask
+    i = ((body * _SPREAD) >> 40) & mask
     while bodies[i] != body:
         if bodies[i] == 0:
             return UNKNOWN
@@ -58,7 +59,7 @@ def slot_table(bodies: list[int], slots: list[int]) -> tuple[IntArray, IntArray]
     size = 1 << (4 * len(bodies)).bit_length()
     keys, values = np.zeros(size, np.int64), np.full(size, UNKNOWN, np.int64)
     for body, slot in zip(bodies, slots, strict=True):
-        i = (body >> 4) % size
+        i = ((body * _SPREAD) >> 40) % size
         while keys[i] != 0:
             i = (i + 1) % size
         keys[i], values[i] = body, slot

@@ -30,7 +30,7 @@ def inertia(parts: list[Array], widths: Array) -> tuple[float, float, float, flo
 
 
 def wetted_edges(parts: list[Array], cuts: Array, widths: Array) -> Array:
-    """Edge table (e, 6) of a block of strips: outer edges with their strip's width, steps with the difference.
+    """Edge table (e, 8) of a block of strips: outer edges with their strip's width, steps with the difference.
 
     A face at a cut appears in both strips with opposite directions; keeping it with both widths is the step.
     """
@@ -41,7 +41,7 @@ def wetted_edges(parts: list[Array], cuts: Array, widths: Array) -> Array:
             width = widths[k] - (0.0 if neighbour is None else min(widths[k], widths[neighbour]))
             if width > 0:
                 top = neighbour is None and a[0] - b[0] > TOP * np.hypot(*(b - a))
-                rows.append((a[0], a[1], b[0], b[1], width, float(top)))
+                rows.append((a[0], a[1], b[0], b[1], width, float(top), *((b - a) / max(np.hypot(*(b - a)), 1e-300))))
     return np.array(rows, dtype=np.float64).reshape(-1, EDGE_COLUMNS)
 
 

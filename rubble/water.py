@@ -26,14 +26,13 @@ from numba import njit
 from rubble.geometry import Array
 from rubble.pointers import IntArray, set_real
 
-#: columns of an edge table: x0, z0, x1, z1 in the body frame [m], width [m], 1 for an edge of the block's top; water
-#: lies to the right of 0 -> 1
-EDGE_COLUMNS = 6
+#: columns of an edge table: x0, z0, x1, z1 in the body frame [m], width [m], 1 for an edge of the block's top, x and z
+#: of the direction 0 -> 1; water lies to the right of it
+EDGE_COLUMNS = 8
 #: columns of a state row: x, z, angle, v_x, v_z, omega
 STATE_COLUMNS = 6
 
-GAUSS_X = (-np.sqrt(0.15), 0.0, np.sqrt(0.15))  # on -1/2 ... 1/2
-GAUSS_W = (5 / 18, 8 / 18, 5 / 18)
+GAUSS_X, OUTER, MIDDLE = float(np.sqrt(0.15)), 5 / 18, 8 / 18  #: outer points on -1/2 ... 1/2, and weights
 
 
 @njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
@@ -74,9 +73,9 @@ def _lacking(edges: Array, e: int, z: float, c: float, s: float, share: float, w
 
 
 @njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, "
-      "float64, float64[::1])", cache=True, nogil=True, error_model="numpy")
-def _edge_force(ax: float, az: float, bx: float, bz: float, width: float, z: float, c: float, s: float, vx: float,
-                vz: float, om: float, water: Array) -> tuple[float, float, float, float]:
+      "float64, float64, float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
+def _edge_force(ax: float, az: float, bx: float, bz: float, tx: float, tz: float, width: float, z: float, c: float,
+                s: float, vx: float, vz: float, om: float, water: Array) -> tuple[float, float, float, float]:
     """Pressure and drag on one edge, all in the body frame, with cosine and sine of its angle: force, moment, power of
     drag. The water stands at height 0 when the centre stands at z.
 
@@ -88,10 +87,7 @@ def _edge_force(ax: float, az: float, bx: float, bz: float, width: float, z: flo
     if da > 0.0 or db > 0.0:
         ax, az, bx, bz = _wetted(ax, az, bx, bz, da, db)
     lx, lz = bx - ax, bz - az
-    length = np.sqrt(lx * lx + lz * lz)
-    if length == 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    tx, tz, mx, mz = lx / length, lz / length, (ax + bx) / 2, (az + bz) / 2
+    length, mx, mz = lx * tx + lz * tz, (ax + bx) / 2, (az + bz) / 2
     area, along = width * length, mx * tx + mz * tz
     mean, tilt = -water[0] * (z + s * mx + c * mz), -water[0] * (s * lx + c * lz) / 12
     ux, uz = vx - om * mz, vz + om * mx
@@ -99,14 +95,10 @@ def _edge_force(ax: float, az: float, bx: float, bz: float, width: float, z: flo
     normal, tangent, couple = -area * mean, -area * water[1] * water[3] * abs(ut) * ut, area * length * tilt
     power, half = tangent * ut, om * length
     if un > -0.5 * abs(half):  # some of the edge may move into the water
-        first, second, third, turn = 0.0, 0.0, 0.0, 0.0
-        for q in range(3):  # Gauss-Legendre, exact to fifth order
-            u = max(un - GAUSS_X[q] * half, 0.0)
-            w = GAUSS_W[q] * u
-            first += w
-            second += w * u
-            third += w * u * u
-            turn += GAUSS_X[q] * w * u
+        u0, u1, u2 = max(un + GAUSS_X * half, 0.0), max(un, 0.0), max(un - GAUSS_X * half, 0.0)
+        w0, w1, w2 = OUTER * u0, MIDDLE * u1, OUTER * u2  # Gauss-Legendre, exact to fifth order
+        first, second, third = w0 + w1 + w2, w0 * u0 + w1 * u1 + w2 * u2, w0 * u0 * u0 + w1 * u1 * u1 + w2 * u2 * u2
+        turn = GAUSS_X * (w2 * u2 - w0 * u0)
         k = area * water[1] * water[2]
         normal -= k * second
         tangent -= k * first * ut
@@ -139,8 +131,8 @@ def block_force(edges: Array, start: int, end: int, water: Array, share: float, 
             if water[5] < 0.0 or share < 1.0:
                 lack += _lacking(edges, e, z, c, s, share, water, state[i, 3], state[i, 4], om)
                 width, level = width * share, z - water[5]
-        gx, gz, my, drag = _edge_force(edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], width, level, c, s, vx, vz,
-                                       om, water)
+        gx, gz, my, drag = _edge_force(edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], edges[e, 6], edges[e, 7],
+                                       width, level, c, s, vx, vz, om, water)
         fx, fz, moment, power = fx + gx, fz + gz, moment + my, power + drag
     out[0], out[1], out[2], out[3], out[4] = c * fx - s * fz, s * fx + c * fz, moment, power, lack
     return lowest
