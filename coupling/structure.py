@@ -26,8 +26,12 @@ DEEP = 1000.0  #: depth of a structure that stands on the sea bed, out of reach 
 
 @njit(cache=True)
 def overlap_of(x, y, z, profile_z, profile_r, revolved):
-    """How far ice at x (m,) reaches behind the face at y (m, k) and z (m,), 0 without a face, and normals (m, k, 3)."""
-    L, normal = np.zeros(y.shape), np.ones((*y.shape, 3))
+    """How far ice at x (m,) reaches behind the face at y (m, k) and z (m,), and normals of the face (m, k, 3).
+
+    Without a face the overlap is 0 and the normal that of a vertical wall, so that nothing divides by zero.
+    """
+    L, normal = np.zeros(y.shape), np.zeros((*y.shape, 3))
+    normal[..., 0] = -1.0
     last = len(profile_z) - 1
     for i in range(y.shape[0]):
         if not profile_z[0] <= z[i] <= profile_z[last]:
@@ -40,7 +44,7 @@ def overlap_of(x, y, z, profile_z, profile_r, revolved):
         length = sqrt(1.0 + slope**2)
         for k in range(y.shape[1]):
             across = y[i, k] if revolved else 0.0
-            if across * across <= r * r:
+            if across * across < r * r:
                 face = -sqrt(r * r - across * across) if revolved else -r
                 L[i, k] = max(x[i] - face, 0.0)
                 normal[i, k, 0] = (face / r if revolved else -1.0) / length

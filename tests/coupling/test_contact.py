@@ -110,3 +110,13 @@ def test_nodes_that_stay_in_front_keep_their_damage():
     depth = law.settle(0.0, np.zeros((2, 3)))
     assert depth[1].min() > 0.4
     assert depth[0].max() < 1e-9 or depth[0].max() < depth[1].min()
+
+
+def test_ice_that_hangs_over_the_side_of_the_cone_is_pressed_where_it_touches_only():
+    """Half of the node's width lies beside the structure: a finite force, from the other half."""
+    structure = cone(np.pi / 4, 15.0)
+    law = contact(structure, y=15.4, width=2.0, front=-2.0)
+    force, tangent = law.evaluate(0.0, np.zeros((1, 3)))
+    assert np.isfinite(force).all()
+    assert np.isfinite(tangent).all()
+    assert 0.0 < -force[0, 2] < P * H * np.sqrt(2) * 2.0
