@@ -10,6 +10,7 @@ import numpy as np
 from coupling.handover import BlockBirth, births
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
+from rubble.geometry import contiguous, moments
 from rubble.initial import Pile, settle
 from rubble.layer import Domain, RubbleLayer
 from rubble.outline import convex_parts
@@ -68,7 +69,7 @@ class RubblePort:
         """Puts one block into its section, outside the structure; returns its mass, 0 if nothing is left."""
         key = self.layer.key_at(b.y)
         polygon = self.layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
-        if len(polygon) < 3 or _area(polygon) < SMALLEST * self.physics.thickness**2:
+        if len(polygon) < 3 or moments(contiguous(polygon))[0] < SMALLEST * self.physics.thickness**2:
             return 0.0
         number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
                                       b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
@@ -188,8 +189,3 @@ class NoRubble:
 
 def _ignore(mass: float) -> None:
     """Nobody keeps books."""
-
-
-def _area(polygon: Array) -> float:
-    x, z = polygon.T
-    return 0.5 * abs(float(np.dot(x, np.roll(z, -1)) - np.dot(z, np.roll(x, -1))))

@@ -74,7 +74,7 @@ class SheetPort:
             out = self.sheet.advance(self._t, force_u, force_q, self.contact, self._release)
         except (StepError, FloatingPointError) as error:
             raise SimulationError(f"t = {self._t:.3f} s: {error}") from error
-        load = -out.contact_mean[:, :3].sum(axis=0) if len(out.contact_mean) else np.zeros(3)
+        load = -out.contact_mean.sum(axis=0)
         self._t = (t_ns + window_ns) / NS
         self._crush()
         events = self._events(out, parts, rubble_load) if out.failure else []

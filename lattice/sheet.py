@@ -204,6 +204,7 @@ class Sheet:
 
     def retire(self, nodes: IntArray) -> None:
         """Takes nodes out whose ice is gone (crushed), with the cells that they hold up."""
+        self._drop_long_step()
         live = self.live_cells
         self.present[nodes] = False
         cells = np.flatnonzero(np.isin(self.grid.cell_nodes, nodes).any(axis=1) & self.intact)
@@ -211,7 +212,6 @@ class Sheet:
         self.intact[cells] = False
         if len(cells):
             self.engine.remove(cells)
-        self._long = None
 
     @property
     def live_cells(self) -> np.ndarray:

@@ -19,6 +19,15 @@ def sparse_rows(rows: Array) -> tuple[IntArray, Array]:
     return place, value
 
 
+@njit(cache=True, inline="always")
+def elongation(dof, place, value, x, c, k):
+    """Elongation of spring k of cell c, times the root of its stiffness."""
+    e = 0.0
+    for i in range(TOUCHED):
+        e += value[k, i] * x[dof[c, place[k, i]]]
+    return e
+
+
 @njit(cache=True)
 def spring_energy(dof, place, value, live, x):
     """Sum over live cells of half the square of each spring's elongation [J]; ``x`` (n,)."""
@@ -26,9 +35,7 @@ def spring_energy(dof, place, value, live, x):
     for c in range(dof.shape[0]):
         if live[c]:
             for k in range(place.shape[0]):
-                e = 0.0
-                for i in range(TOUCHED):
-                    e += value[k, i] * x[dof[c, place[k, i]]]
+                e = elongation(dof, place, value, x, c, k)
                 total += e * e
     return 0.5 * total
 
@@ -40,9 +47,7 @@ def spring_force(dof, place, value, live, x):
     for c in range(dof.shape[0]):
         if live[c]:
             for k in range(place.shape[0]):
-                e = 0.0
-                for i in range(TOUCHED):
-                    e += value[k, i] * x[dof[c, place[k, i]]]
+                e = elongation(dof, place, value, x, c, k)
                 for i in range(TOUCHED):
                     out[dof[c, place[k, i]]] += e * value[k, i]
     return out
