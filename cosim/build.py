@@ -9,12 +9,13 @@ import numpy as np
 from cosim.observer import RunInfo
 from cosim.scenario import Scenario
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import Array, IntArray
+from coupling.interface import NS, Array, IntArray
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
 from coupling.scheduler import RubbleParticipant, Scheduler
-from coupling.schemes import SCHEMES
+from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
+from coupling.steering import ByPower, Steering, fixed
 from coupling.structure import Structure, cone, plane_slope
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
@@ -41,7 +42,18 @@ def build(scenario: Scenario) -> Scheduler:
             ledger.initial_mass += rubble.fill(scenario.rubble.initial_volume, scenario.scenario.seed,
                                                float(structure.face_x(0.0, ice.freeboard)), scenario.sheet.length,
                                                port.z_mid).mass
-    return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[scenario.coupling.scheme])
+    c = scenario.coupling
+    iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
+    return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[c.scheme](iteration), build_steering(scenario),
+                     scenario.duration_ns)
+
+
+def build_steering(scenario: Scenario) -> Steering:
+    c, substep_ns = scenario.coupling, round(scenario.rubble.substep * NS)
+    if c.steering == "fixed":
+        return fixed
+    shortest, longest = c.bounds(scenario.rubble.substep)
+    return ByPower(scenario.window_ns, round(shortest * NS), round(longest * NS), substep_ns, c.power_tolerance)
 
 
 def build_ice(scenario: Scenario) -> Ice:

@@ -42,7 +42,7 @@ class Recorder:
         self._info = run_info
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
         self._thickness = float(run_info.scenario.ice.thickness)
-        self._cells, self._since_sheet = -1, 0
+        self._cells, self._since_sheet, self._due_ns = -1, 0, self._every_ns
         self._file = self.path.open("wb")
         self._writer = mcap.writer.Writer(self._file)
         self._writer.start(profile="", library="cosim")
@@ -82,7 +82,10 @@ class Recorder:
         """Every so often, at the start and end, and whenever something breaks."""
         first = frame.t_ns <= self._info.window_ns
         last = frame.t_ns >= self._info.duration_ns
-        return first or last or bool(frame.events) or frame.t_ns % self._every_ns == 0
+        due = frame.t_ns >= self._due_ns
+        if due:
+            self._due_ns = (frame.t_ns // self._every_ns + 1) * self._every_ns
+        return first or last or bool(frame.events) or due
 
     def _with_sheet(self, frame: Frame) -> bool:
         cells = int(frame.sheet.intact.sum())

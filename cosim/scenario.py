@@ -58,6 +58,9 @@ class ScenarioModel(Section):
     def _times_are_whole_multiples(self) -> Self:
         window = self.coupling.window
         _whole("coupling.window", window, "rubble sub-step", self.rubble.substep)
+        for bound in ("shortest_window", "longest_window"):
+            if (value := getattr(self.coupling, bound)) is not None:
+                _whole(f"coupling.{bound}", value, "rubble sub-step", self.rubble.substep)
         _whole("scenario.duration", self.scenario.duration, "time window", window)
         _whole("recording.every", self.recording.every, "time window", window)
         return self

@@ -10,6 +10,7 @@ import numpy as np
 from coupling.handover import BlockBirth, births
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
+from rubble import snapshot
 from rubble.geometry import contiguous, moments
 from rubble.initial import Pile, settle
 from rubble.layer import Domain, RubbleLayer
@@ -29,6 +30,16 @@ class HandOver:
     mass: float  #: of the fragment, without what was crushed before [kg]
     trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
     momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
+
+
+@dataclass(frozen=True)
+class Saved:
+    """The rubble at the end of a window."""
+
+    layer: bytes  #: see `rubble.snapshot`
+    edges: dict[int, SheetEdge]
+    forces: SheetForces
+    fragments: int
 
 
 class RubblePort:
@@ -102,19 +113,13 @@ class RubblePort:
         """Sections that hold blocks or are next to one: those that must know where the sheet is."""
         return sorted({k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)})
 
-    def set_sheet(self, edges: dict[int, SheetEdge]) -> None:
-        """The sheet's edges for the coming window."""
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
+        """The sheet's edges for the coming window; ``carried`` are the forces that it already answers to in them."""
         for key in set(self._edges) - set(edges):
             self.layer.remove_sheet(key)
         self._edges = edges
         for key, e in edges.items():
-            self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, self._carried(e))
-
-    def _carried(self, edge: SheetEdge) -> tuple[float, float]:
-        """The rubble's force that the sheet has already answered to, in x and z."""
-        on = np.isin(self._forces.nodes, edge.nodes)
-        total = self._forces.force[on].sum(axis=0)
-        return float(total[0]), float(total[2])
+            self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, _on_edge(carried, e))
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
@@ -139,6 +144,22 @@ class RubblePort:
         """Mean forces over the last window."""
         return self._forces
 
+    @property
+    def power(self) -> float:
+        """Mean power of these forces on the edges as the rubble saw them move [W]."""
+        return self.layer.power_on_sheet
+
+    def save(self) -> Saved:
+        """The rubble between two windows, for `restore`; this run goes on from the copy as well (`rubble.snapshot`)."""
+        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, self._fragments)
+        self.restore(saved)
+        return saved
+
+    def restore(self, saved: Saved) -> None:
+        """Sets the rubble back; a window from here has the same bits as the first one from here."""
+        self.layer = snapshot.restore(saved.layer, self.layer)
+        self._edges, self._forces, self._fragments = saved.edges, saved.forces, saved.fragments
+
     def blocks(self) -> BlockTable:
         t = self.layer.table()
         return BlockTable(t.id, t.section, t.phase, t.mass, t.width, t.position, t.angle, t.velocity, t.omega, t.load,
@@ -161,7 +182,7 @@ class NoRubble:
     """Breaking only: fragments are taken away and counted as cleared."""
 
     def __init__(self) -> None:
-        self.mass, self.cleared_mass = 0.0, 0.0
+        self.mass, self.cleared_mass, self.power = 0.0, 0.0, 0.0
 
     def add(self, fragment: Fragment) -> HandOver:
         mass = float(fragment.mass.sum())
@@ -171,7 +192,14 @@ class NoRubble:
     def sections_in_use(self) -> list[int]:
         return []
 
-    def set_sheet(self, edges: dict[int, SheetEdge]) -> None:
+    def save(self) -> float:
+        """All there is to remember: what has been taken away."""
+        return self.cleared_mass
+
+    def restore(self, saved: float) -> None:
+        self.cleared_mass = saved
+
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
         """Nothing is there to meet the sheet."""
 
     def advance(self, window_ns: int) -> None:
@@ -185,6 +213,12 @@ class NoRubble:
 
     def load(self) -> Array:
         return np.zeros((3, 3))
+
+
+def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:
+    """Sum of the forces on one edge, in x and z [N]."""
+    total = forces.force[np.isin(forces.nodes, edge.nodes)].sum(axis=0)
+    return float(total[0]), float(total[2])
 
 
 def _ignore(mass: float) -> None:

@@ -1,24 +1,127 @@
-"""Coupling schemes by name: who sees whose newest data."""
+"""Coupling schemes by name: who sees whose newest data.
+
+A scheme runs one window: it is called with the scheduler and returns what the sheet did. Blocks are born with the state
+that their ice had at the start of the window and are moved through it by the rubble, in every scheme: no time is lost
+or counted twice.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
-from coupling.scheduler import Report, Scheduler
+from coupling.interface import NS, SheetEdge, SheetForces, SimulationError
+from coupling.relaxation import Aitken, change, combined
+from coupling.scheduler import Report, Scheduler, Scheme
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """How an implicit scheme iterates."""
+
+    tolerance: float = 1e-3  #: change of the interface forces that counts as none, relative
+    max_iterations: int = 30
+    relaxation: float = 0.5  #: omega before there are two residuals
+    floor: float = 1e4  #: forces below which the change is set against this instead [N]
+    stop: bool = True  #: a window that does not converge ends the run; else it is counted
 
 
 def serial_explicit(s: Scheduler) -> Report:
-    """First the sheet under the rubble's forces of the last window, then the rubble against the sheet as it is now.
-
-    Blocks are born with the state that their ice had at the start of the window and are moved through it by the
-    rubble, so no time is lost or counted twice.
-    """
-    report = s.sheet.advance(s.t_ns, s.window_ns, s.rubble.forces_on_sheet(), s.rubble_load())
-    for fragment in report.fragments:
-        s.hand_over(fragment)
-    s.rubble.set_sheet(s.sheet.edges(s.rubble.sections_in_use()))
-    s.rubble.advance(s.window_ns)
+    """First the sheet under the rubble's forces of the last window, then the rubble against the sheet as it is now."""
+    force = s.rubble.forces_on_sheet()
+    report = s.move_sheet(force)
+    s.move_rubble(s.sheet.edges(s.rubble.sections_in_use()), force)
     return report
 
 
-SCHEMES: dict[str, Callable[[Scheduler], Report]] = {"serial-explicit": serial_explicit}
+class ParallelExplicit:
+    """Both at once, each with the other's data of the last window (Jacobi).
+
+    What the rubble meets is the sheet at the start of the window, which answers to the forces of the window before.
+    Blocks cannot be moved before they are born: a window with a hand-over, and the first one, run one after the other.
+    """
+
+    def __init__(self) -> None:
+        self._carried = SheetForces.none()
+
+    def __call__(self, s: Scheduler) -> Report:
+        force, edges = s.rubble.forces_on_sheet(), self._edges(s)
+        report = s.move_sheet(force)
+        if edges is None or report.fragments:
+            s.move_rubble(s.sheet.path(s.rubble.sections_in_use()), force)
+        else:
+            s.move_rubble(edges, self._carried)
+        self._carried = force
+        return report
+
+    def _edges(self, s: Scheduler) -> dict[int, SheetEdge] | None:
+        """The sheet before it moves; None if no window has gone before."""
+        return s.sheet.edges(s.rubble.sections_in_use()) if s.t_ns > 0 else None
+
+
+class SerialImplicit:
+    """The window is repeated until the forces under which the sheet moves are those with which the rubble answers.
+
+    The rubble meets the sheet on the way that it has just gone (`path`). Its edge is there a body on springs that
+    already carry the forces of this iteration, so the springs answer to the change alone; when there is none, they are
+    at rest and the edge of the rubble goes the way of the lattice, whatever the stiffness of the springs.
+
+    Forces are predicted by a straight line through the last two windows. After a hand-over the sheet is another
+    function of the forces: prediction and relaxation start anew. A window that does not converge ends the run, or it is
+    counted in the balances together with its residual: its forces are no better than those of an explicit scheme.
+    """
+
+    def __init__(self, iteration: Iteration):
+        self._limits, self._aitken = iteration, Aitken(iteration.relaxation)
+        self._before: tuple[int, SheetForces] | None = None  #: length and answer of the window before the last
+        self._last: tuple[int, SheetForces] | None = None
+        self._unconverged = 0
+
+    def __call__(self, s: Scheduler) -> Report:
+        force, start, pieces = self._first_guess(s), s.save(), -1
+        for k in range(1, self._limits.max_iterations + 1):
+            if k > 1:
+                s.restore(start)
+            report = s.move_sheet(force)
+            s.move_rubble(s.sheet.path(s.rubble.sections_in_use()), force)
+            answer = s.rubble.forces_on_sheet()
+            residual = change(force, answer, self._limits.floor)
+            if residual <= self._limits.tolerance:
+                break
+            if pieces not in (-1, len(report.fragments)):
+                self._aitken.drop()
+            pieces, force = len(report.fragments), self._aitken.next(force, answer)
+        else:
+            self._give_up(s, residual)
+        self._before, self._last = self._last, (s.window_ns, answer)
+        s.notes = {"iterations": float(k), "interface_residual": residual,
+                   "unconverged_windows": float(self._unconverged)}
+        return report
+
+    def _first_guess(self, s: Scheduler) -> SheetForces:
+        """The forces in the middle of the coming window, on the line through the middles of the last two."""
+        if s.jump:
+            self._before = self._last = None
+            self._aitken.drop()
+        self._aitken.begin()
+        if self._before is None or self._last is None:
+            return s.rubble.forces_on_sheet()
+        (older, f), (newer, g) = self._before, self._last
+        ahead = (s.window_ns + newer) / (newer + older)
+        return combined(1.0 + ahead, g, -ahead, f)
+
+    def _give_up(self, s: Scheduler, residual: float) -> None:
+        self._unconverged += 1
+        if self._limits.stop:
+            raise SimulationError(
+                f"t = {s.t_ns / NS:.3f} s: the forces between sheet and rubble still change by {residual:.2g} of "
+                f"themselves after {self._limits.max_iterations} iterations of the window of {s.window_ns / 1e6:g} ms "
+                f"(tolerance {self._limits.tolerance:g}): shorten coupling.window, raise coupling.max_iterations or "
+                "coupling.tolerance, or let such windows be counted with coupling.unconverged = 'count'")
+
+
+SCHEMES: dict[str, Callable[[Iteration], Scheme]] = {
+    "serial-explicit": lambda _: serial_explicit,
+    "parallel-explicit": lambda _: ParallelExplicit(),
+    "serial-implicit": SerialImplicit,
+}

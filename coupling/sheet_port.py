@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,8 +22,11 @@ from coupling.interface import (
     SimulationError,
 )
 from coupling.structure import Structure
-from lattice.engine import StepError
+from lattice.engine import State, StepError
+from lattice.memory import Memory, recall, remember
 from lattice.sheet import Outcome, Sheet, edge_displacement
+
+Motion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity (n, 2) of nodes
 
 REACH = 30.0  #: length of sheet behind its edge that the rubble meets [m]
 
@@ -56,7 +59,10 @@ class SheetPort:
         self.edge = CrushedEdge((g.nx, g.ny), g.d, ice.h, tan)
         self.initial_mass = ice.rho_i * ice.h * float(g.area.sum())
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
+        #: mean power of the rubble's forces on the sheet over the last window, in the fixed frame [W]
+        self.power = 0.0
         self._t, self._quiet = 0.0, True
+        self._start = 0.0, sheet.state  #: time and state at the start of the last window
         self._fragments: list[Fragment] = []
         self._at_structure: list[bool] = []
         self._renew_edge()
@@ -66,6 +72,8 @@ class SheetPort:
     def advance(self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array) -> SheetReport:
         """Moves the sheet over a window under the rubble's mean forces; ``rubble_load`` (3,) is for the events only."""
         self._t, self._fragments, self._at_structure = t_ns / NS, [], []
+        self._start = self._t, self.sheet.state
+        self.sheet.set_window(window_ns / NS)
         n = self.sheet.grid.nodes
         force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
         force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
@@ -76,10 +84,26 @@ class SheetPort:
             raise SimulationError(f"t = {self._t:.3f} s: {error}") from error
         load = -out.contact_mean.sum(axis=0)
         self._t = (t_ns + window_ns) / NS
+        self.power = self._power(rubble)
         self._crush()
         events = self._events(out, parts, rubble_load) if out.failure else []
         self._quiet = not out.failed
         return SheetReport(load, self._fragments, events)
+
+    def save(self) -> Memory:
+        """The sheet, its edge and its contact between two windows, for `restore`."""
+        return [*remember(self), *remember(self.edge, "depth"), *remember(self.contact), *self.sheet.save()]
+
+    def restore(self, saved: Memory) -> None:
+        """Sets all back; a window from here has the same bits as the first one from here."""
+        recall(saved)
+
+    def _power(self, rubble: SheetForces) -> float:
+        """Power of the forces on the nodes that are still in the lattice, by their way in the window [W]."""
+        (t, state), on = self._start, self.sheet.present[rubble.nodes]
+        nodes = rubble.nodes[on]
+        way = self._position(nodes) - self._place(nodes, state, t)
+        return float((rubble.force[on] * way).sum()) / (self._t - t)
 
     def _release(self, nodes: IntArray) -> None:
         self._fragments.append(self._fragment(nodes))
@@ -158,9 +182,12 @@ class SheetPort:
             cut_tan=self.edge.tan[column], cut_face=self.contact.face, thickness=self.sheet.ice.h)
 
     def _position(self, nodes: IntArray) -> Array:
-        s = self.sheet.state
+        return self._place(nodes, self.sheet.state, self._t)
+
+    def _place(self, nodes: IntArray, s: State, t: float) -> Array:
+        """Positions of nodes in a state at a time, (n, 3) [m]."""
         x, y = self.sheet.grid.xy[nodes].T
-        return np.column_stack((x + self.velocity * self._t + s.u[nodes, 0], y + s.u[nodes, 1],
+        return np.column_stack((x + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1],
                                 self.z_mid + s.q[nodes, 0]))
 
     @property
@@ -175,7 +202,17 @@ class SheetPort:
     # ---- what others see --------------------------------------------------------------------------------------
 
     def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
-        """The sheet's edge and underside in these sections, as the rubble meets it in the coming window."""
+        """The sheet's edge and underside in these sections, where they are and move now."""
+        return self._edges(sections, self._motion)
+
+    def path(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
+        """The same edges at the start of the last window, with their mean velocity over it: they end where they are.
+
+        Without the nodes that have left in the window.
+        """
+        return self._edges(sections, self._mean_motion)
+
+    def _edges(self, sections: Sequence[int], motion: Motion) -> dict[int, SheetEdge]:
         found = {}
         stiffness = self._stiffness() if sections else []
         for key in sections:
@@ -185,7 +222,7 @@ class SheetPort:
                 column = first + int(np.argmin(front))  # the rearmost: ice beside a new block must not overlap it
                 if front.min() >= 0:
                     nearest = int(np.argmin(np.abs(self.front_column - column))) if len(self.front_column) else 0
-                    found[key] = self._edge(column, stiffness[nearest])
+                    found[key] = self._edge(column, stiffness[nearest], motion)
         return found
 
     def _stiffness(self) -> list[tuple[float, float]]:
@@ -196,17 +233,27 @@ class SheetPort:
             nodes = self.edge.front[column] * self.sheet.grid.ny + column
         return self.sheet.engine.point_stiffness(nodes)
 
-    def _edge(self, column: int, stiffness: tuple[float, float]) -> SheetEdge:
-        g, s, front = self.sheet.grid, self.sheet.state, int(self.edge.front[column])
+    def _edge(self, column: int, stiffness: tuple[float, float], motion: Motion) -> SheetEdge:
+        g, front = self.sheet.grid, int(self.edge.front[column])
         rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
         present = self.sheet.present[rows * g.ny + column]
         rows = rows[: int(np.argmin(present))] if not present.all() else rows
         nodes = rows * g.ny + column
-        position = self._position(nodes)
-        velocity = np.column_stack((s.u_dot[nodes, 0] + self.velocity, s.q_dot[nodes, 0]))
+        position, velocity = motion(nodes)
         lead = float(self.edge.lead(rows[:1])[0])
         return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity,
                          self.sheet.ice.h, nodes, stiffness)
+
+    def _motion(self, nodes: IntArray) -> tuple[Array, Array]:
+        """Position (n, 3) [m] and velocity in x and z (n, 2) [m/s] of nodes now."""
+        s = self.sheet.state
+        return self._position(nodes), np.column_stack((s.u_dot[nodes, 0] + self.velocity, s.q_dot[nodes, 0]))
+
+    def _mean_motion(self, nodes: IntArray) -> tuple[Array, Array]:
+        """The same at the start of the last window, and on average over it."""
+        t, state = self._start
+        begin = self._place(nodes, state, t)
+        return begin, ((self._position(nodes) - begin) / (self._t - t))[:, ::2]
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""

@@ -29,6 +29,7 @@ from lattice.assembly import (
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.linear import CrackedSystem
+from lattice.memory import Memory, remember
 from lattice.springs import sparse_rows
 from lattice.stiffness import Springs
 
@@ -141,6 +142,8 @@ class Step:
 class Engine:
     """Time integration of a sheet that loses cells. Factorisations are kept for every step length in use."""
 
+    _written: tuple[str, ...] = ("_intact", "_systems")  #: see `memory.remember`
+
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, *, held_in_plane: np.ndarray, damping: float = 0.0,
                  alpha: float = 0.0):
         """``held_in_plane`` (nodes,) nodes held in x and y, or (nodes, 2) each direction on its own.
@@ -167,6 +170,11 @@ class Engine:
                 CrackedSystem(self.grid, self.rows_q, self._intact, self.M_q / a**2 + self.C_q / a + self.k_f, scale,
                               np.zeros(3 * self.grid.nodes, bool)))
         self._in, self._out = self._systems[dt]
+
+    def save(self) -> Memory:
+        """What `memory.recall` sets back. A system that is first used later is made anew then."""
+        systems = [s for pair in self._systems.values() for s in pair]
+        return [*remember(self, *self._written), *(m for s in systems for m in s.save())]
 
     def remove(self, cells: IntArray) -> None:
         """Takes failed cells out of all systems (thesis 4.2.1: springs go, mass stays)."""

@@ -32,21 +32,30 @@ def aligned(*shape: int) -> Array:
 
 
 class ExplicitEngine(Engine):
-    """Leapfrog of a sheet that loses cells; `Engine` keeps masses, springs and the stiffness of single points."""
+    """Leapfrog of a sheet that loses cells; `Engine` keeps masses, springs and the stiffness of single points.
+
+    Nothing in its arrays outlives a window: `set_cells` and `start` fill them.
+    """
 
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, held_in_plane: np.ndarray,
                  damping: float = 0.0, alpha: float = 0.0, step: float | None = None):
         """``window`` [s] is cut into equal sub-steps of at most ``step`` [s] (default: `SHARE_OF_CRITICAL`)."""
         super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha)
         self.critical = self._critical_step()
+        self._springs, self._longest = springs, step
         if step is not None and not 0.0 < step <= self.critical:
             raise ValueError(f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
                              f"{self.critical:.3g} s (largest frequency of the lattice, damping included)")
-        self.window, self.damping = window, damping
-        self.sub_steps = math.ceil(window / (step or SHARE_OF_CRITICAL * self.critical))
-        self.dt = window / self.sub_steps
+        self.damping = damping
         self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
-        self._allocate(springs)
+        self.set_window(window)
+
+    def set_window(self, window: float) -> None:
+        """Cuts windows of this length [s] from the next `start` on."""
+        self.window = window
+        self.sub_steps = math.ceil(window / (self._longest or SHARE_OF_CRITICAL * self.critical))
+        self.dt = window / self.sub_steps
+        self._allocate(self._springs)
 
     def _critical_step(self) -> float:
         K_u, K_q = assemble(self.grid, self.rows_u).tocsr(), assemble(self.grid, self.rows_q).tocsr()

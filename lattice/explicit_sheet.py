@@ -33,6 +33,8 @@ LIVELY = 2e-7  #: change of the loss of a block, as share of the stored energy, 
 class ExplicitSheet(Sheet):
     """`Sheet` with waves and the inertia of the crack."""
 
+    _written = (*Sheet._written, "failure_times", "failed_cells")
+
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
                  alpha: float = 0.0, share: float = 0.2, step: float | None = None,
                  contact_time: float = CONTACT_TIME):
@@ -41,12 +43,20 @@ class ExplicitSheet(Sheet):
         self.engine: ExplicitEngine = ExplicitEngine(grid, ice, springs, dt, held_in_plane=held, damping=damping,
                                                      alpha=alpha, step=step)
         self.energy.engine = self.engine
+        self._contact_time = contact_time
         self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
         self._lively, self._loss_rate = True, 0.0
         self._eased = np.zeros(grid.cells)  #: limit of cells that a crack tip has just reached, else 0 [Pa]
         self._unconcentrated = np.full(grid.cells, ice.sigma_t)  #: limits before the last failure [Pa]
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
         self.failed_cells: list[int] = []  #: which they were
+
+    def set_window(self, dt: float) -> None:
+        """As `Sheet.set_window`; the sub-steps are cut anew."""
+        if dt != self.dt:
+            super().set_window(dt)
+            self.engine.set_window(dt)
+            self.block = max(1, int(self._contact_time / self.engine.dt))
 
     def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
                 release: Callable[[IntArray], None]) -> Outcome:

@@ -16,6 +16,7 @@ import scipy.linalg as la
 from lattice.assembly import cell_dof
 from lattice.fronts import Factors
 from lattice.grid import Array, Grid, IntArray
+from lattice.memory import Memory, remember
 from lattice.springs import sparse_rows, spring_force
 
 MAX_RANK = 120  #: columns of U at which a new factorisation is cheaper than carrying them (60 x 60 to 240 x 240 nodes)
@@ -39,6 +40,10 @@ class CrackedSystem:
         self._Z = np.empty((len(self._held), 0))
         self._points = np.empty(0, np.int64)
         self._point_columns = np.empty((len(self._held), 0))
+
+    def save(self) -> Memory:
+        """What `memory.recall` sets back; factors and columns are kept by reference."""
+        return remember(self, "_intact", "_pending")
 
     def remove(self, cells: IntArray) -> None:
         """Takes cells out of the matrix; the work is done when it is used next."""

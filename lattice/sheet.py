@@ -22,6 +22,7 @@ from lattice.engine import EdgeContact, Engine, State, Step
 from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
+from lattice.memory import Memory, recall, remember
 from lattice.stiffness import Springs
 
 LONG_STEP_ERROR = 2e-4  #: largest estimated error of a displacement in a long step, as share of the thickness
@@ -55,6 +56,8 @@ class LongStep:
 class Sheet:
     """A floe of intact and failed cells that drifts with its frame."""
 
+    _written: tuple[str, ...] = ("intact", "present", "energy", "_long")  #: see `memory.remember`
+
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
                  alpha: float = 0.0, share: float = 0.2, long_step: int = 1):
         """``held``, ``damping``, ``alpha`` as in `Engine`; a piece with a held node is not loose.
@@ -72,8 +75,24 @@ class Sheet:
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
         self._longest, self._windows, self._wait = long_step, min(2, long_step), 0
+        self._longest_time = long_step * dt
         self._known: tuple[bytes, np.ndarray, Array] | None = None
         self._long: LongStep | None = None
+
+    def save(self) -> Memory:
+        """The sheet between two windows, for `restore`. The contact is not part of it."""
+        return [*remember(self, *self._written), *self.engine.save()]
+
+    def restore(self, saved: Memory) -> None:
+        """Sets the sheet back; what follows has the bits of what followed the first time."""
+        recall(saved)
+
+    def set_window(self, dt: float) -> None:
+        """Length of the windows from now on [s]; a long step, which is cut into equal windows, is given up."""
+        if dt != self.dt:
+            self._drop_long_step()
+            self._longest = max(1, round(self._longest_time / dt))
+            self.dt, self._windows = dt, min(2, self._longest)
 
     def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
                 release: Callable[[IntArray], None]) -> Outcome:

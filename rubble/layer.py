@@ -69,11 +69,15 @@ class RubbleLayer:
         self._next = 0
 
     def __getstate__(self) -> dict[str, Any]:
-        return {k: v for k, v in self.__dict__.items() if k != "_pool"}
+        return {k: v for k, v in self.__dict__.items() if k not in ("_pool", "solids")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._pool = ThreadPoolExecutor(self.threads) if self.threads > 1 else None
+
+    def share(self, other: RubbleLayer) -> None:
+        """Takes structure and threads from the layer of which this one is a copy."""
+        self.solids, self.threads, self._pool = other.solids, other.threads, other._pool
 
     # ---- sections ---------------------------------------------------------------------------------------------
 
@@ -234,6 +238,12 @@ class RubbleLayer:
         if found is None or found.sheet is None or self._window == 0.0:
             return np.zeros((0 if found is None or found.sheet is None else len(found.sheet.nodes), 2))
         return found.sheet.nodes[:, 2:] / self._window
+
+    @property
+    def power_on_sheet(self) -> float:
+        """Mean power of the blocks' forces on the moving edges of the sheet over the last window [W]."""
+        done = sum(float(s.sheet_sums[4]) for s in self.sections.values())
+        return -done / self._window if self._window else 0.0
 
     @property
     def mass(self) -> float:

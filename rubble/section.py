@@ -55,7 +55,7 @@ class Section:
         self.changed()
 
     def __getstate__(self) -> dict[str, Any]:
-        own = {k: v for k, v in self.__dict__.items() if k not in _ADDRESSES}
+        own = {k: v for k, v in self.__dict__.items() if k not in _ADDRESSES | _TABLES}
         return {**own, "sums": self.sums.copy()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -209,3 +209,6 @@ class Section:
 
 _NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
 _ADDRESSES = {"_reader", "_space", "_friction", "_bodies", "_addresses", "_slots", "_state"}
+#: laid out anew from the blocks by `changed`
+_TABLES = {"_edges", "_offset", "_dead", "_limit", "polygons", "corners", "moved", "side", "load", "_flooded", "axes",
+           "status", "state"}

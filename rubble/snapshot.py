@@ -8,46 +8,27 @@ The sub-step stays constant across a snapshot; pymunk checks that its version is
 
 from __future__ import annotations
 
-import io
+import gc
 import pickle
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from rubble.layer import RubbleLayer
 
-_NO_COPY = "solids of the structure are given again when a snapshot is restored"
-
-
-class _Pickler(pickle.Pickler):
-    def __init__(self, file: io.BytesIO, layer: RubbleLayer) -> None:
-        super().__init__(file, protocol=5)
-        self.solids = layer.solids
-
-    def persistent_id(self, obj: Any) -> str | None:
-        """The function that gives the structure is not saved."""
-        return _NO_COPY if obj is self.solids else None
-
-
-class _Unpickler(pickle.Unpickler):
-    def __init__(self, file: io.BytesIO, solids: Any) -> None:
-        super().__init__(file)
-        self.solids = solids
-
-    def persistent_load(self, pid: Any) -> Any:
-        return self.solids
-
 
 def save(layer: RubbleLayer) -> bytes:
-    """The layer as it is between two windows."""
-    file = io.BytesIO()
-    _Pickler(file, layer).dump(layer)
-    return file.getvalue()
+    """The layer as it is between two windows, without the function that gives the structure."""
+    with _no_collection():
+        return pickle.dumps(layer, protocol=5)
 
 
 def restore(saved: bytes, like: RubbleLayer) -> RubbleLayer:
-    """A layer from `save`; the structure is that of the layer ``like``."""
-    layer = _Unpickler(io.BytesIO(saved), like.solids).load()
+    """A layer from `save`; structure and threads are those of the layer ``like``."""
+    with _no_collection():
+        layer = pickle.loads(saved)
     if not isinstance(layer, RubbleLayer):
         raise ValueError("these bytes are no snapshot of a rubble layer; use what rubble.snapshot.save returned")
+    layer.share(like)
     return layer
 
 
@@ -55,3 +36,15 @@ def checkpoint(layer: RubbleLayer) -> tuple[RubbleLayer, bytes]:
     """Save, and the copy from which the run has to go on."""
     saved = save(layer)
     return restore(saved, layer), saved
+
+
+@contextmanager
+def _no_collection() -> Iterator[None]:
+    """Many small objects come to be at once: the garbage collector would go through all others every few hundred."""
+    on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if on:
+            gc.enable()
