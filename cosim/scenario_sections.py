@@ -208,7 +208,7 @@ class Coupling(Section):
     scheme: Literal["serial-explicit", "parallel-explicit", "serial-implicit"] = "serial-explicit"
     tolerance: float = Field(1e-3, gt=0, lt=1)  #: implicit: change of the forces, relative, that ends the iteration
     max_iterations: int = Field(30, ge=2)  #: implicit: of one window
-    relaxation: float = Field(0.5, gt=0, le=1)  #: implicit: share of the change that is taken over before Aitken's own
+    relaxation: float = Field(1.0, gt=0, le=1)  #: implicit: share of the change that is taken over before Aitken's own
     force_floor: Force = 1e4  #: implicit: smaller forces are set against this one [N]
     unconverged: Literal["stop", "count"] = "stop"  #: implicit: such a window ends the run, or is counted in the ledger
     #: fixed: all windows alike; power: by what the coupling makes or takes of the power that it exchanges

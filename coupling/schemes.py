@@ -21,7 +21,7 @@ class Iteration:
 
     tolerance: float = 1e-3  #: change of the interface forces that counts as none, relative
     max_iterations: int = 30
-    relaxation: float = 0.5  #: omega before there are two residuals
+    relaxation: float = 1.0  #: omega before there are two residuals
     floor: float = 1e4  #: forces below which the change is set against this instead [N]
     stop: bool = True  #: a window that does not converge ends the run; else it is counted
 
@@ -66,9 +66,11 @@ class SerialImplicit:
     already carry the forces of this iteration, so the springs answer to the change alone; when there is none, they are
     at rest and the edge of the rubble goes the way of the lattice, whatever the stiffness of the springs.
 
-    Forces are predicted by a straight line through the last two windows. After a hand-over the sheet is another
-    function of the forces: prediction and relaxation start anew. A window that does not converge ends the run, or it is
-    counted in the balances together with its residual: its forces are no better than those of an explicit scheme.
+    Forces are predicted by a straight line through the last two windows. The iteration ends with the pass in which a
+    piece breaks off: under the push of the blocks that it becomes it would not have broken, and then nothing pushes, so
+    there is no answer to converge to. Such a window is as good as an explicit one and says so by its residual. In the
+    next window the sheet is another function of the forces: prediction and relaxation start anew. Any other window
+    that does not converge ends the run, or is counted in the balances.
     """
 
     def __init__(self, iteration: Iteration):
@@ -78,7 +80,7 @@ class SerialImplicit:
         self._unconverged = 0
 
     def __call__(self, s: Scheduler) -> Report:
-        force, start, pieces = self._first_guess(s), s.save(), -1
+        force, start = self._first_guess(s), s.save()
         for k in range(1, self._limits.max_iterations + 1):
             if k > 1:
                 s.restore(start)
@@ -86,11 +88,9 @@ class SerialImplicit:
             s.move_rubble(s.sheet.path(s.rubble.sections_in_use()), force)
             answer = s.rubble.forces_on_sheet()
             residual = change(force, answer, self._limits.floor)
-            if residual <= self._limits.tolerance:
+            if residual <= self._limits.tolerance or report.fragments:
                 break
-            if pieces not in (-1, len(report.fragments)):
-                self._aitken.drop()
-            pieces, force = len(report.fragments), self._aitken.next(force, answer)
+            force = self._aitken.next(force, answer)
         else:
             self._give_up(s, residual)
         self._before, self._last = self._last, (s.window_ns, answer)
