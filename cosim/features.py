@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from cosim.run_data import RunData
-from coupling.interface import NS, PHASES, Event
+from coupling.interface import NS, PHASES, Array, Event, IntArray
 
 Kinds = str | Sequence[str]
 
@@ -27,8 +27,7 @@ def first_contact(run: RunData) -> float | None:
     loaded = np.flatnonzero(run.component("f") > 0)
     if not len(loaded):
         return None
-    window = int(run.metadata["window_ns"])
-    return float(run.t_ns[loaded[0]] - window) / NS
+    return float(run.begin_ns[loaded[0]]) / NS
 
 
 def event_load(run: RunData, event: Kinds, component: str = "fx") -> float | None:
@@ -82,7 +81,8 @@ def level_between_peaks(run: RunData, component: str = "fx", share: float = 0.05
     total = run.component(component)
     other = np.abs(run.component(component, "breaking")) + np.abs(run.component(component, "rotating"))
     between = (run.t_ns > found.t_ns) & (other < share * np.abs(total).max()) & (total > 0)
-    return float(total[between].mean()) if between.any() else None
+    length = run.t_ns - run.begin_ns
+    return float(np.average(total[between], weights=length[between])) if between.any() else None
 
 
 def load_period(run: RunData, component: str = "fx", after: Kinds | None = None, before: Kinds | None = None,
@@ -90,7 +90,8 @@ def load_period(run: RunData, component: str = "fx", after: Kinds | None = None,
     """Dominant period of the load cycles [s]: largest line of the spectrum with at least three periods in the record.
 
     The record runs between the first events ``after`` and ``before``; its linear trend is taken off and a Hann window
-    is laid over it. None without an event ``after``, or if the record is shorter than 8 windows.
+    is laid over it; windows of different length are read at the distance of the shortest. None without an event
+    ``after``, or if the record is shorter than 8 windows.
     """
     begin, end = _between(run, after, before)
     if begin is None:
@@ -99,12 +100,19 @@ def load_period(run: RunData, component: str = "fx", after: Kinds | None = None,
     t, load = run.t[chosen], run.component(component)[chosen]
     if len(t) < 8 or np.ptp(load) == 0:
         return None
+    t, load = _evenly(run.t_ns[chosen], load)
     cycles = load - np.polyval(np.polyfit(t, load, 1), t)
     padded = 8 * len(t)
     power = np.abs(np.fft.rfft(cycles * np.hanning(len(t)), padded)) ** 2
     frequency = np.fft.rfftfreq(padded, t[1] - t[0])
     power[frequency < 3 / (t[-1] - t[0])] = 0
     return float(1 / frequency[power.argmax()]) if power.any() else None
+
+
+def _evenly(t_ns: IntArray, load: Array) -> tuple[Array, Array]:
+    """Times [s] at even distances, the shortest that occurs, and the load there."""
+    even = np.arange(t_ns[0], t_ns[-1] + 1, np.diff(t_ns).min())
+    return even / NS, np.interp(even, t_ns, load)
 
 
 def _between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[int | None, int]:

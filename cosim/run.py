@@ -100,4 +100,6 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
                      **scheduler.sheet.energy, "energy_residual": books.energy_residual,
                      "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,
                      "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
-                     "cleared_mass": scheduler.rubble.cleared_mass}
+                     "cleared_mass": scheduler.rubble.cleared_mass,
+                     "interface_loss": scheduler.power.loss, "interface_exchanged": scheduler.power.exchanged,
+                     **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")}}

@@ -38,6 +38,13 @@ class RunData:
         """(n,) end of each window [s]."""
         return self.t_ns / NS
 
+    @property
+    def begin_ns(self) -> IntArray:
+        """(n,) start of each window [ns]; that of the first one from the length that the run began with."""
+        if not len(self.t_ns):
+            return self.t_ns
+        return np.concatenate((self.t_ns[:1] - int(self.metadata["window_ns"]), self.t_ns[:-1]))
+
     def component(self, name: str, phase: str | None = None) -> Array:
         """(n,) one component, ``fx``, ``fy``, ``fz`` or the resultant ``f``, of all phases or of one [N]."""
         load = self.load.sum(axis=1) if phase is None else self.load[:, PHASES.index(phase)]

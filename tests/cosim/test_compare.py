@@ -61,6 +61,18 @@ def test_period_of_cycles_on_a_trend(period):
     assert features.load_period(run) == pytest.approx(period, rel=0.02)
 
 
+def test_windows_of_different_length_have_the_same_period_level_and_first_contact():
+    t = np.sort(np.concatenate((0.1 * np.arange(1, 501), 0.1 * np.arange(300, 500) + 0.05)))
+    swing = series(t, 5.0 + 0.1 * t + np.sin(2 * math.pi * t / 2.5))
+    assert features.load_period(swing) == pytest.approx(2.5, rel=0.02)
+    assert features.first_contact(series(t, np.where(t > 35.01, 1.0, 0.0))) == pytest.approx(35.0, rel=1e-9)
+    broken = Event(round(20e9), "hand_over", (9.0, 0.0, 0.0), 3, (0.0, 0.0, 0.0), "")
+    run = series(t, 0.0, [broken])
+    run.load[:, 2, 0] = np.where(t < 40.01, 1.0, 3.0)  # sliding: half of the time 1, half of it 3
+    run.load[:20, 0, 0] = 100.0
+    assert features.level_between_peaks(run) == pytest.approx((1.0 * 20 + 3.0 * 10) / 30, rel=1e-9)
+
+
 def test_a_steady_load_has_no_period():
     assert features.load_period(series(0.05 * np.arange(1, 101), np.full(100, 3.0))) is None
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim.recording import RecordingError, messages, read_run, recover
+from cosim.recording import Recorder, RecordingError, messages, read_run, recover
 from cosim.scenario import load_scenario
 
 WINDOWS = 240  # 12 s of 50 ms
@@ -44,6 +44,18 @@ def test_pictures_come_every_so_often_and_at_events(run_file):
     half_seconds = {k * 5 * 10**8 for k in range(1, 25)}
     assert half_seconds | {5 * 10**7} == set(times["/ice/nodes"])
     assert set(times["/ice/sheet"]) < set(times["/ice/nodes"]) and times["/tf"] == [0]
+
+
+def test_pictures_come_at_the_first_window_past_their_time(synthetic, tmp_path):
+    """Windows that are steered need not end at whole multiples of recording.every."""
+    scenario = load_scenario("van_vliet_2018_floe_165m", ["scenario.duration='3 s'", "sheet.nodes=[40,40]"])
+    frames = [f for k, f in enumerate(synthetic.frames(scenario)) if k % 3 == 2]  # 150 ms
+    with Recorder(tmp_path / "run.mcap") as recorder:
+        recorder.on_start(synthetic.run_info(scenario))
+        for frame in frames:
+            recorder.on_frame(frame)
+    times = [t // 10**6 for _, t, _ in messages(tmp_path / "run.mcap", ["/ice/nodes"])]
+    assert times == [600, 1050, 1500, 2100, 2550, 3000]
 
 
 def test_same_scenario_same_bits(run_file, record, tmp_path):

@@ -43,6 +43,12 @@ def fault(*overrides: str) -> str:
     ("coupling.window=1 ms", ["coupling.window", "nearest: 5 ms"]),
     ("scenario.duration=10.02 s", ["scenario.duration", "10 s or 10.05 s"]),
     ("recording.every=20 ms", ["recording.every", "nearest: 50 ms"]),
+    ("coupling.longest_window=100 ms", ["coupling.longest_window", "steering"]),
+    ("coupling.tolerance=0", ["coupling.tolerance", "greater than 0"]),
+    ("coupling.max_iterations=1", ["coupling.max_iterations", "greater than or equal to 2"]),
+    ("coupling.relaxation=1.5", ["coupling.relaxation", "less than or equal to 1"]),
+    ("coupling.unconverged=ignore", ["coupling.unconverged", "stop", "count"]),
+    ("coupling.steering=wind", ["coupling.steering", "fixed", "power"]),
     ("coupling.scheme=fancy", ["coupling.scheme", "fancy", "serial-explicit"]),
     ("structure.neck_radius=16 m", ["structure.neck_radius", "15 m"]),
     ("structure.kind=plane", ["structure.waterline_radius", "plane"]),
@@ -56,6 +62,21 @@ def fault(*overrides: str) -> str:
 def test_fault_names_key_value_and_remedy(override, says):
     text = fault(override)
     assert all(part in text for part in says), text
+
+
+@pytest.mark.parametrize(("bounds", "says"), [
+    (["coupling.shortest_window=60 ms"], ["coupling.shortest_window", "at most the first window of 50 ms"]),
+    (["coupling.longest_window=20 ms"], ["coupling.longest_window", "at least the first window of 50 ms"]),
+    (["coupling.longest_window=52 ms"], ["coupling.longest_window", "rubble sub-step 5 ms", "50 ms or 55 ms"]),
+])
+def test_bounds_of_steered_windows(bounds, says):
+    text = fault("coupling.steering=power", *bounds)
+    assert all(part in text for part in says), text
+
+
+def test_defaults_of_steered_windows():
+    c = load_scenario(FLOE, ["coupling.steering=power"]).coupling
+    assert c.bounds(0.005) == (0.005, 0.2)
 
 
 def test_missing_value_shows_an_example(tmp_path):
