@@ -4,10 +4,13 @@ Call order of one macro step (time window) of the serial-explicit scheme::
 
     sheet.advance(window, rubble_forces)      the sheet moves, meets the structure, breaks
     for fragment in sheet.released(): ...     broken pieces leave the lattice, become blocks
-    rubble.set_sheet(edges)                   where the sheet's underside and edge are now
+    rubble.set_sheet(edges, rubble_forces)    where the sheet's underside and edge are now, and what they already carry
     rubble.advance(window)                    blocks move; impulses are summed
     rubble_forces = rubble.forces_on_sheet()  act on the sheet in the next window
     observers(frame)                          recorder, progress, load series: read only
+
+Other schemes call the same in another order (`coupling.schemes`). An implicit one repeats a window: both participants
+``save()`` at its start and ``restore(saved)`` as often as needed, and what follows has the same bits every time.
 
 Frame: SI units, right-handed, fixed to the structure. x = drift direction of the ice towards the structure,
 y to the left, z up, z = 0 still water. The structure's axis is x = y = 0; the ice comes from -x.

@@ -17,7 +17,7 @@ from rubble.phases import ROTATING, update_phases
 from rubble.physics import RubblePhysics
 from rubble.pointers import address, body_offsets
 from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
-from rubble.space import new_space
+from rubble.space import Solid, new_space
 from rubble.stepping import STEP, read_bodies, run
 from rubble.trim import cut_away
 from rubble.water import EDGE_COLUMNS, STATE_COLUMNS
@@ -64,10 +64,8 @@ class Section:
         self.sums[:] = state["sums"]
 
     def _add_solid(self, solid: Array) -> None:
-        shape = pymunk.Poly(self.space.static_body, [(float(x), float(z)) for x, z in solid])
-        shape.elasticity, shape.collision_type = self.physics.restitution**0.5, STRUCTURE
-        shape.filter = pymunk.ShapeFilter(categories=STRUCTURE_CATEGORY)
-        self.space.add(shape)
+        self.space.add(Solid(self.space.static_body, solid, self.physics.restitution**0.5, STRUCTURE,
+                             STRUCTURE_CATEGORY))
 
     # ---- blocks and sheet -------------------------------------------------------------------------------------
 

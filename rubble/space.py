@@ -11,6 +11,7 @@ from typing import Any
 
 import pymunk
 
+from rubble.geometry import Array
 from rubble.physics import RubblePhysics
 
 
@@ -28,6 +29,19 @@ class Space(pymunk.Space):
                 special.append((key, value))
         state["special"] = special
         return state
+
+
+class Solid(pymunk.Poly):
+    """A piece of the structure; its many corners are pickled as one array."""
+
+    def __init__(self, body: pymunk.Body, corners: Array, elasticity: float, kind: int, category: int) -> None:
+        super().__init__(body, corners.tolist())
+        self._made_of = body, corners, elasticity, kind, category
+        self.elasticity, self.collision_type = elasticity, kind
+        self.filter = pymunk.ShapeFilter(categories=category)
+
+    def __reduce__(self) -> Any:
+        return Solid, self._made_of
 
 
 def new_space(physics: RubblePhysics) -> Space:

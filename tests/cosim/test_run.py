@@ -5,12 +5,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cosim.run import run_scenario
 from cosim.scenario import load_scenario
 
 CASE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_55m_centre"
+QUICK = ["sheet.nodes=[20, 20]", "scenario.duration='6 s'", "drift.velocity='0.4 m/s'", "contact.strength='800 kPa'"]
 SMALL = ["sheet.nodes=[20, 20]", "scenario.duration='46 s'", "rubble.columns_per_section=1"]
 
 
@@ -49,6 +51,50 @@ def test_same_scenario_same_bits(tmp_path):
         assert json.loads(done.stdout)["simulated_s"] == 3.0
         files.append(out.read_bytes())
     assert files[0] == files[1]
+
+
+def quick(*overrides):
+    """Two pieces break off after 4.8 s; 6 s are simulated."""
+    return run_scenario(load_scenario(CASE, [*QUICK, *overrides]))
+
+
+@pytest.mark.parametrize("scheme", ["parallel-explicit", "serial-implicit"])
+def test_other_schemes_break_the_same_ice(scheme):
+    """Until pieces break off nothing is exchanged: the breaking phase has the same bits."""
+    usual, other = quick(), quick(f"coupling.scheme='{scheme}'")
+    assert other.by_phase["breaking"].value[3] == usual.by_phase["breaking"].value[3]
+    assert other.fragments >= 2 and other.ledger["mass_error"] < 1e-12
+    assert other.ledger["interface_exchanged"] > 0.0
+    assert other.ledger.get("unconverged_windows", 0.0) == 0.0
+    assert other.ledger["interface_loss"] != usual.ledger["interface_loss"]
+
+
+class Ends:
+    """Observer that notes where windows end."""
+
+    def __init__(self):
+        self.t_ns = [0]
+
+    def on_start(self, run_info):
+        pass
+
+    def on_frame(self, frame):
+        self.t_ns.append(frame.t_ns)
+
+    def on_close(self):
+        pass
+
+
+def test_a_steered_run_ends_on_time():
+    watch = Ends()
+    scenario = load_scenario(CASE, [*QUICK, "coupling.scheme=serial-implicit", "coupling.steering=power",
+                                    "coupling.shortest_window='10 ms'", "coupling.window='100 ms'",
+                                    "coupling.longest_window='100 ms'"])
+    result = run_scenario(scenario, [watch])
+    *length, last = (np.diff(watch.t_ns) // 10**6).tolist()
+    assert result.t_ns == 6 * 10**9
+    assert {50, 100} <= set(length) <= {10, 25, 50, 100} and last <= 100 and last % 5 == 0
+    assert result.fragments >= 2 and result.ledger["mass_error"] < 1e-12
 
 
 def test_both_engines_split_the_floe_at_the_same_load():

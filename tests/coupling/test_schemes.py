@@ -145,3 +145,21 @@ def test_the_stiffness_of_the_rubbles_edge_changes_the_way_not_the_answer(k):
     frames = [s.macro_step() for _ in range(5)]
     assert s.rubble.pressed == pytest.approx(5e-3 / (1.0 / WALL + 1.0 / STIFFNESS), rel=1e-9)
     assert max(f.ledger["iterations"] for f in frames) <= (2.0 if k == STIFFNESS else 4.0)
+
+
+@pytest.mark.parametrize("k, grows", [(0.5, False), (1.0, False), (2.0, False), (5.0, True)])
+def test_the_explicit_scheme_needs_an_edge_no_stiffer_than_the_sheet_is_in_a_window(k, grows):
+    """The error of the force changes by -(k / K - 1) k_w / (k_w + k) from window to window, K that of the sheet.
+
+    K falls short of the stiffness of a stage where inertia rules the window: short windows let the forces alternate.
+    """
+    scheme = SCHEMES["serial-explicit"](TIGHT)
+    s = Scheduler(Pusher(), Wall(k * STIFFNESS), Ledger(1.0), round(WINDOW * stubs.NS), scheme)
+    error = []
+    for n in range(1, 9):
+        s.macro_step()
+        error.append(s.rubble.pressed - n * 1e-3 / (1.0 / WALL + 1.0 / STIFFNESS))
+    factor = -(k - 1.0) * WALL / (WALL + k * STIFFNESS)
+    steady = np.diff(error)  # the load grows evenly: the lag is constant
+    assert steady[1:] == pytest.approx(factor * steady[:-1], rel=1e-6, abs=1e-3)
+    assert bool(abs(steady[-1]) > abs(steady[0]) + 1.0) == grows
