@@ -22,7 +22,8 @@ from coupling.interface import (
     SimulationError,
 )
 from coupling.structure import Structure
-from lattice.engine import StepError
+from coupling.yielding import oscillator
+from lattice.engine import State, StepError
 from lattice.sheet import Outcome, Sheet, edge_displacement
 
 REACH = 30.0  #: length of sheet behind its edge that the rubble meets [m]
@@ -56,7 +57,11 @@ class SheetPort:
         self.edge = CrushedEdge((g.nx, g.ny), g.d, ice.h, tan)
         self.initial_mass = ice.rho_i * ice.h * float(g.area.sum())
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
+        self.setback = 0.0  #: distance by which the floe starts farther back than its grid [m]
         self._t, self._quiet = 0.0, True
+        self._before: tuple[float, State] = (0.0, sheet.state)  #: time and state at the start of the last window
+        self._yielding_key = b""
+        self._yields: list[tuple[tuple[float, float], tuple[float, float]]] = []
         self._fragments: list[Fragment] = []
         self._at_structure: list[bool] = []
         self._renew_edge()
@@ -66,9 +71,8 @@ class SheetPort:
     def advance(self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array) -> SheetReport:
         """Moves the sheet over a window under the rubble's mean forces; ``rubble_load`` (3,) is for the events only."""
         self._t, self._fragments, self._at_structure = t_ns / NS, [], []
-        n = self.sheet.grid.nodes
-        force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
-        force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
+        self._before = self._t, self.sheet.state
+        force_u, force_q = self._forces(rubble)
         parts = self.sheet.parts
         try:
             out = self.sheet.advance(self._t, force_u, force_q, self.contact, self._release)
@@ -80,6 +84,25 @@ class SheetPort:
         events = self._events(out, parts, rubble_load) if out.failure else []
         self._quiet = not out.failed
         return SheetReport(load, self._fragments, events)
+
+    def _forces(self, rubble: SheetForces) -> tuple[Array, Array]:
+        """The rubble's forces on all nodes: in plane (n, 2), and w with its rotations (n, 3)."""
+        n = self.sheet.grid.nodes
+        force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
+        force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
+        return force_u, force_q
+
+    def rest_under(self, rubble: SheetForces) -> None:
+        """Starts the run in equilibrium with rubble that lies under the sheet, its edge just touching the structure."""
+        try:
+            self.sheet.rest_under(*self._forces(rubble))
+        except StepError as error:
+            raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
+        y = edge_displacement(self.sheet.state, self.contact.nodes)
+        overlap, _ = self.contact.overlap(0.0, y)
+        self.setback += max(float(overlap.max(initial=0.0)), 0.0)
+        self._before = 0.0, self.sheet.state
+        self._renew_edge()
 
     def _release(self, nodes: IntArray) -> None:
         self._fragments.append(self._fragment(nodes))
@@ -93,7 +116,7 @@ class SheetPort:
         column = np.flatnonzero(self.meets & (front >= 0))
         row = front[column]
         nodes = row * g.ny + column
-        x_front = g.xy[nodes, 0] + self.edge.lead(row)
+        x_front = g.xy[nodes, 0] + self.edge.lead(row) - self.setback
         self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
         self.front_column = column
 
@@ -157,10 +180,11 @@ class SheetPort:
             tilt=s.q[nodes, 1].copy(), tilt_rate=s.q_dot[nodes, 1].copy(), cut=self.edge.cut(row, column),
             cut_tan=self.edge.tan[column], cut_face=self.contact.face, thickness=self.sheet.ice.h)
 
-    def _position(self, nodes: IntArray) -> Array:
-        s = self.sheet.state
+    def _position(self, nodes: IntArray, t: float | None = None, state: State | None = None) -> Array:
+        """Places of nodes (m, 3) [m], now or at time t in the given state."""
+        t, s = self._t if t is None else t, state or self.sheet.state
         x, y = self.sheet.grid.xy[nodes].T
-        return np.column_stack((x + self.velocity * self._t + s.u[nodes, 0], y + s.u[nodes, 1],
+        return np.column_stack((x - self.setback + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1],
                                 self.z_mid + s.q[nodes, 0]))
 
     @property
@@ -175,38 +199,40 @@ class SheetPort:
     # ---- what others see --------------------------------------------------------------------------------------
 
     def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
-        """The sheet's edge and underside in these sections, as the rubble meets it in the coming window."""
-        found = {}
-        stiffness = self._stiffness() if sections else []
+        """The sheet's edge and underside in these sections, as they move in the window that was advanced last."""
+        columns = {}
         for key in sections:
             first = key * self.columns_per_section
             if 0 <= first < self.sheet.grid.ny:
                 front = self.edge.front[first : first + self.columns_per_section]
-                column = first + int(np.argmin(front))  # the rearmost: ice beside a new block must not overlap it
-                if front.min() >= 0:
-                    nearest = int(np.argmin(np.abs(self.front_column - column))) if len(self.front_column) else 0
-                    found[key] = self._edge(column, stiffness[nearest])
-        return found
+                if front.min() >= 0:  # the rearmost: ice beside a new block must not overlap it
+                    columns[key] = first + int(np.argmin(front))
+        yields = self._yielding(list(columns.values())) if columns else []
+        return {key: self._edge(column, *y) for (key, column), y in zip(columns.items(), yields, strict=True)}
 
-    def _stiffness(self) -> list[tuple[float, float]]:
-        """Stiffness in x and z of the edge nodes in the structure's way, or of any front node if there are none."""
-        nodes = self.contact.nodes
-        if not len(nodes):
-            column = np.flatnonzero(self.edge.front >= 0)[:1]
-            nodes = self.edge.front[column] * self.sheet.grid.ny + column
-        return self.sheet.engine.point_stiffness(nodes)
+    def _yielding(self, columns: list[int]) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+        """Stiffness and inertia in x and z with which the front nodes answer when all of them are pressed at once."""
+        s = self.sheet
+        nodes = self.edge.front[columns] * s.grid.ny + np.array(columns)
+        key = nodes.tobytes() + s.live_cells.tobytes()
+        if key != self._yielding_key:
+            k, m = oscillator(*s.answer(nodes), s.dt)
+            self._yields = [(tuple(a), tuple(b)) for a, b in zip(k.tolist(), m.tolist(), strict=True)]
+            self._yielding_key = key
+        return self._yields
 
-    def _edge(self, column: int, stiffness: tuple[float, float]) -> SheetEdge:
-        g, s, front = self.sheet.grid, self.sheet.state, int(self.edge.front[column])
+    def _edge(self, column: int, stiffness: tuple[float, float], inertia: tuple[float, float]) -> SheetEdge:
+        g, front = self.sheet.grid, int(self.edge.front[column])
         rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
         present = self.sheet.present[rows * g.ny + column]
         rows = rows[: int(np.argmin(present))] if not present.all() else rows
         nodes = rows * g.ny + column
-        position = self._position(nodes)
-        velocity = np.column_stack((s.u_dot[nodes, 0] + self.velocity, s.q_dot[nodes, 0]))
+        t, state = self._before
+        start, end = self._position(nodes, t, state), self._position(nodes, self._t, self.sheet.state)
+        velocity = (end - start)[:, ::2] / (self._t - t) if self._t > t else np.zeros((len(nodes), 2))
         lead = float(self.edge.lead(rows[:1])[0])
-        return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity,
-                         self.sheet.ice.h, nodes, stiffness)
+        return SheetEdge(start[:, 0], start[:, 2], float(start[0, 0]) + lead, velocity, self.sheet.ice.h, nodes,
+                         stiffness, inertia)
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""
