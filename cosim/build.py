@@ -15,6 +15,7 @@ from coupling.rubble_port import NoRubble, RubblePort
 from coupling.scheduler import RubbleParticipant, Scheduler
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
+from coupling.start import lay_rubble
 from coupling.steering import ByPower, Steering, fixed
 from coupling.structure import Structure, cone, plane_slope
 from lattice.explicit_sheet import ExplicitSheet
@@ -39,9 +40,8 @@ def build(scenario: Scenario) -> Scheduler:
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
         if scenario.rubble.initial_volume > 0.0:
-            ledger.initial_mass += rubble.fill(scenario.rubble.initial_volume, scenario.scenario.seed,
-                                               float(structure.face_x(0.0, ice.freeboard)), scenario.sheet.length,
-                                               port.z_mid).mass
+            lay_rubble(port, rubble, scenario.rubble.initial_volume, scenario.scenario.seed)
+            ledger.initial_mass += rubble.mass
     c = scenario.coupling
     iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
     return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[c.scheme](iteration), build_steering(scenario),

@@ -4,7 +4,7 @@ Call order of one macro step (time window) of the serial-explicit scheme::
 
     sheet.advance(window, rubble_forces)      the sheet moves, meets the structure, breaks
     for fragment in sheet.released(): ...     broken pieces leave the lattice, become blocks
-    rubble.set_sheet(edges, rubble_forces)    where the sheet's underside and edge are now, and what they already carry
+    rubble.set_sheet(path, rubble_forces)     how the sheet's underside and edge move, and what they already carry
     rubble.advance(window)                    blocks move; impulses are summed
     rubble_forces = rubble.forces_on_sheet()  act on the sheet in the next window
     observers(frame)                          recorder, progress, load series: read only
@@ -95,7 +95,11 @@ class Fragment:
 
 @dataclass(frozen=True, slots=True)
 class SheetEdge:
-    """The sheet in one section as the rubble meets it: nodes of its front rows, front first. Constant over a window."""
+    """The sheet in one section as the rubble meets it in a window: nodes of its front rows, front first.
+
+    Places are those at the start of the window, velocities the means over it, both with the rubble's forces of the
+    window before; what these forces change since, the edge answers as an oscillator (see `coupling.yielding`).
+    """
 
     x: Array  #: (m,) node positions along x, decreasing [m]
     z: Array  #: (m,) middle of the thickness [m]
@@ -103,7 +107,8 @@ class SheetEdge:
     velocity: Array  #: (m, 2) velocity of the nodes in x and z [m/s]
     thickness: float  #: [m]
     nodes: IntArray  #: (m,) node numbers of the lattice, to which forces return
-    stiffness: tuple[float, float]  #: local stiffness of the edge in x and z as the lattice sees it [N/m]
+    stiffness: tuple[float, float]  #: of the edge in x and z [N/m]
+    inertia: tuple[float, float]  #: mass that moves with the edge in x and z [kg]
 
 
 @dataclass(slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase,
 from coupling.structure import Structure
 from rubble import snapshot
 from rubble.geometry import contiguous, moments
-from rubble.initial import Pile, settle
+from rubble.initial import Pile, rest, settle
 from rubble.layer import Domain, RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -92,22 +92,34 @@ class RubblePort:
         keys = range(self.layer.key_at(-half), self.layer.key_at(half) + 1)
         return [k for k in keys if abs(self.layer.centre(k)) < half]
 
-    def fill(self, volume: float, seed: int, front: float, length: float, middle: float) -> Pile:
-        """Initial rubble: ``volume`` [m^3] settled under a still sheet from x = ``front`` back by ``length``, middle
-        at z = ``middle`` [m]; the lattice's own edge takes its place in the first window."""
-        under, fronts = middle - 0.5 * self.physics.thickness, {}
-        x = front - np.arange(0.0, length, self.layer.pitch)
-        for key in self.front_sections():
-            face = float(self.structure.face_x(self.layer.centre(key), under))
-            if np.isfinite(face):
-                self.layer.set_sheet(key, x, np.full(len(x), middle), front, np.zeros((len(x), 2)),
-                                     self.physics.thickness, (LID, LID))
-                fronts[key] = (min(face, front), under)
+    def fill(self, volume: float, seed: int, edges: dict[int, SheetEdge]) -> Pile:
+        """Initial rubble: ``volume`` [m^3] settled in the sections of ``edges``, under a still sheet."""
+        self._hold(edges)
+        return self._settled(lambda: settle(self.layer, self._fronts(edges), volume, seed))
+
+    def rest(self, edges: dict[int, SheetEdge]) -> Pile:
+        """Initial rubble comes to rest once more, under a sheet that has moved."""
+        self._hold(edges)
+        return self._settled(lambda: rest(self.layer, self._fronts(edges)))
+
+    def _hold(self, edges: dict[int, SheetEdge]) -> None:
+        self.set_sheet({k: replace(e, velocity=np.zeros_like(e.velocity), stiffness=(LID, LID),
+                                inertia=(self.physics.sheet_mass, self.physics.sheet_mass))
+                        for k, e in edges.items()}, self._forces)
+
+    def _settled(self, pile: Callable[[], Pile]) -> Pile:
         try:
-            self.pile = settle(self.layer, fronts, volume, seed)
+            self.pile = pile()
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
+        self._forces = self._on_sheet()
         return self.pile
+
+    def _fronts(self, edges: dict[int, SheetEdge]) -> dict[int, tuple[float, float]]:
+        """x of the structure's face at the sheet's underside, or of the sheet's front, and z of the underside [m]."""
+        under = {k: float(e.z[0]) - 0.5 * e.thickness for k, e in edges.items()}
+        face = {k: float(self.structure.face_x(self.layer.centre(k), under[k])) for k in edges}
+        return {k: (min(face[k], e.front), under[k]) for k, e in edges.items() if np.isfinite(face[k])}
 
     def sections_in_use(self) -> list[int]:
         """Sections that hold blocks or are next to one: those that must know where the sheet is."""
@@ -119,7 +131,8 @@ class RubblePort:
             self.layer.remove_sheet(key)
         self._edges = edges
         for key, e in edges.items():
-            self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, _on_edge(carried, e))
+            self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, e.inertia,
+                                 _on_edge(carried, e))
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
@@ -130,15 +143,17 @@ class RubblePort:
             raise SimulationError(str(error)) from error
         if self.layer.crushed_mass > crushed:
             self.on_crushed(self.layer.crushed_mass - crushed)
+        self._forces = self._on_sheet()
+
+    def _on_sheet(self) -> SheetForces:
+        """Mean forces on the sheet's nodes over the last window."""
         nodes: list[IntArray] = [e.nodes for e in self._edges.values()]
-        forces = [self.layer.sheet_forces(key) for key in self._edges]
-        if nodes:
-            f = np.concatenate(forces)
-            on = np.flatnonzero(f.any(axis=1))
-            force = np.column_stack((f[:, 0], np.zeros(len(f)), f[:, 1]))
-            self._forces = SheetForces(np.concatenate(nodes)[on], force[on])
-        else:
-            self._forces = SheetForces.none()
+        if not nodes:
+            return SheetForces.none()
+        f = np.concatenate([self.layer.sheet_forces(key) for key in self._edges])
+        on = np.flatnonzero(f.any(axis=1))
+        force = np.column_stack((f[:, 0], np.zeros(len(f)), f[:, 1]))
+        return SheetForces(np.concatenate(nodes)[on], force[on])
 
     def forces_on_sheet(self) -> SheetForces:
         """Mean forces over the last window."""

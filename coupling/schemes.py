@@ -27,10 +27,10 @@ class Iteration:
 
 
 def serial_explicit(s: Scheduler) -> Report:
-    """First the sheet under the rubble's forces of the last window, then the rubble against the sheet as it is now."""
+    """First the sheet under the rubble's forces of the last window, then the rubble against the way it has gone."""
     force = s.rubble.forces_on_sheet()
     report = s.move_sheet(force)
-    s.move_rubble(s.sheet.edges(s.rubble.sections_in_use()), force)
+    s.move_rubble(s.sheet.path(s.rubble.sections_in_use()), force)
     return report
 
 

@@ -22,6 +22,7 @@ from coupling.interface import (
     SimulationError,
 )
 from coupling.structure import Structure
+from coupling.yielding import oscillator
 from lattice.engine import State, StepError
 from lattice.memory import Memory, recall, remember
 from lattice.sheet import Outcome, Sheet, edge_displacement
@@ -63,6 +64,9 @@ class SheetPort:
         self.power = 0.0
         self._t, self._quiet = 0.0, True
         self._start = 0.0, sheet.state  #: time and state at the start of the last window
+        self.setback = 0.0  #: distance by which the floe starts farther back than its grid [m]
+        self._yielding_key: tuple[object, ...] = ()
+        self._yields: list[tuple[tuple[float, float], tuple[float, float]]] = []
         self._fragments: list[Fragment] = []
         self._at_structure: list[bool] = []
         self._renew_edge()
@@ -74,9 +78,7 @@ class SheetPort:
         self._t, self._fragments, self._at_structure = t_ns / NS, [], []
         self._start = self._t, self.sheet.state
         self.sheet.set_window(window_ns / NS)
-        n = self.sheet.grid.nodes
-        force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
-        force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
+        force_u, force_q = self._forces(rubble)
         parts = self.sheet.parts
         try:
             out = self.sheet.advance(self._t, force_u, force_q, self.contact, self._release)
@@ -105,6 +107,25 @@ class SheetPort:
         way = self._position(nodes) - self._place(nodes, state, t)
         return float((rubble.force[on] * way).sum()) / (self._t - t)
 
+    def _forces(self, rubble: SheetForces) -> tuple[Array, Array]:
+        """The rubble's forces on all nodes: in plane (n, 2), and w with its rotations (n, 3)."""
+        n = self.sheet.grid.nodes
+        force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
+        force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
+        return force_u, force_q
+
+    def rest_under(self, rubble: SheetForces) -> None:
+        """Starts the run in equilibrium with rubble that lies under the sheet, its edge just touching the structure."""
+        try:
+            self.sheet.rest_under(*self._forces(rubble))
+        except StepError as error:
+            raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
+        y = edge_displacement(self.sheet.state, self.contact.nodes)
+        overlap, _ = self.contact.overlap(0.0, y)
+        self.setback += max(float(overlap.max(initial=0.0)), 0.0)
+        self._start = 0.0, self.sheet.state
+        self._renew_edge()
+
     def _release(self, nodes: IntArray) -> None:
         self._fragments.append(self._fragment(nodes))
         self._at_structure.append(bool(np.isin(nodes, self.contact.nodes).any()))
@@ -117,7 +138,7 @@ class SheetPort:
         column = np.flatnonzero(self.meets & (front >= 0))
         row = front[column]
         nodes = row * g.ny + column
-        x_front = g.xy[nodes, 0] + self.edge.lead(row)
+        x_front = g.xy[nodes, 0] + self.edge.lead(row) - self.setback
         self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
         self.front_column = column
 
@@ -187,7 +208,7 @@ class SheetPort:
     def _place(self, nodes: IntArray, s: State, t: float) -> Array:
         """Positions of nodes in a state at a time, (n, 3) [m]."""
         x, y = self.sheet.grid.xy[nodes].T
-        return np.column_stack((x + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1],
+        return np.column_stack((x - self.setback + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1],
                                 self.z_mid + s.q[nodes, 0]))
 
     @property
@@ -213,27 +234,29 @@ class SheetPort:
         return self._edges(sections, self._mean_motion)
 
     def _edges(self, sections: Sequence[int], motion: Motion) -> dict[int, SheetEdge]:
-        found = {}
-        stiffness = self._stiffness() if sections else []
+        columns = {}
         for key in sections:
             first = key * self.columns_per_section
             if 0 <= first < self.sheet.grid.ny:
                 front = self.edge.front[first : first + self.columns_per_section]
-                column = first + int(np.argmin(front))  # the rearmost: ice beside a new block must not overlap it
-                if front.min() >= 0:
-                    nearest = int(np.argmin(np.abs(self.front_column - column))) if len(self.front_column) else 0
-                    found[key] = self._edge(column, stiffness[nearest], motion)
-        return found
+                if front.min() >= 0:  # the rearmost: ice beside a new block must not overlap it
+                    columns[key] = first + int(np.argmin(front))
+        yields = self._yielding(list(columns.values())) if columns else []
+        return {key: self._edge(column, *y, motion) for (key, column), y in zip(columns.items(), yields, strict=True)}
 
-    def _stiffness(self) -> list[tuple[float, float]]:
-        """Stiffness in x and z of the edge nodes in the structure's way, or of any front node if there are none."""
-        nodes = self.contact.nodes
-        if not len(nodes):
-            column = np.flatnonzero(self.edge.front >= 0)[:1]
-            nodes = self.edge.front[column] * self.sheet.grid.ny + column
-        return self.sheet.engine.point_stiffness(nodes)
+    def _yielding(self, columns: list[int]) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+        """Stiffness and inertia in x and z with which the front nodes answer when all of them are pressed at once."""
+        s = self.sheet
+        nodes = self.edge.front[columns] * s.grid.ny + np.array(columns)
+        key = s.dt, nodes.tobytes(), s.live_cells.tobytes()
+        if key != self._yielding_key:
+            k, m = oscillator(*s.answer(nodes), s.dt)
+            self._yields = [(tuple(a), tuple(b)) for a, b in zip(k.tolist(), m.tolist(), strict=True)]
+            self._yielding_key = key
+        return self._yields
 
-    def _edge(self, column: int, stiffness: tuple[float, float], motion: Motion) -> SheetEdge:
+    def _edge(self, column: int, stiffness: tuple[float, float], inertia: tuple[float, float],
+              motion: Motion) -> SheetEdge:
         g, front = self.sheet.grid, int(self.edge.front[column])
         rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
         present = self.sheet.present[rows * g.ny + column]
@@ -241,8 +264,8 @@ class SheetPort:
         nodes = rows * g.ny + column
         position, velocity = motion(nodes)
         lead = float(self.edge.lead(rows[:1])[0])
-        return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity,
-                         self.sheet.ice.h, nodes, stiffness)
+        return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity, self.sheet.ice.h,
+                         nodes, stiffness, inertia)
 
     def _motion(self, nodes: IntArray) -> tuple[Array, Array]:
         """Position (n, 3) [m] and velocity in x and z (n, 2) [m/s] of nodes now."""

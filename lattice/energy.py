@@ -62,6 +62,11 @@ class EnergyBooks:
         return float(spring_energy(e.dof_u, *e.sparse_u, live, u.ravel())
                      + spring_energy(e.dof_q, *e.sparse_q, live, q.ravel()))
 
+    def begin(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
+        """Starts from a deflected state: the work that brought the sheet there counts as the rubble's."""
+        self.measure(s, live, present)
+        self.rubble = self.stored
+
     def measure(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Takes stock of a state."""
         self.elastic = self.springs(s.u, s.q, live)

@@ -160,7 +160,7 @@ class Engine:
         self._intact = np.ones(grid.cells, bool)
         self._systems: dict[float, tuple[CrackedSystem, CrackedSystem]] = {}
 
-    def _use(self, dt: float) -> None:
+    def use(self, dt: float) -> None:
         """Makes the systems of this step length the present ones."""
         a = self._a = GAMMA * dt
         if dt not in self._systems:
@@ -183,6 +183,16 @@ class Engine:
             for system in pair:
                 system.remove(cells)
 
+    def equilibrium(self, force_u: Array, force_q: Array) -> State:
+        """State of rest under constant forces (n, 2), (n, 3); a floe that nothing holds stays where it is in plane."""
+        g, n = self.grid, self.grid.nodes
+        supported = np.zeros(3 * n, bool)
+        q = CrackedSystem(g, self.rows_q, self._intact, self.k_f, 1.0, supported).solve(force_q.ravel())
+        u = np.zeros(2 * n)
+        if self._held.any():
+            u = CrackedSystem(g, self.rows_u, self._intact, np.zeros(2 * n), 1.0, self._held).solve(force_u.ravel())
+        return State(u.reshape(n, 2), q.reshape(n, 3), np.zeros((n, 2)), np.zeros((n, 3)))
+
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
         """Force per displacement of single nodes in x and z, for motions of the length of a stage [N/m].
 
@@ -197,7 +207,7 @@ class Engine:
 
         Displacements are relative to the frame that drifts with the ice.
         """
-        self._use(dt)
+        self.use(dt)
         first = self._euler(t + self._a, state, force_u, force_q, contact)
         back, s1 = (1.0 - GAMMA) * dt, first.state
         start = State(state.u + back * s1.u_dot, state.q + back * s1.q_dot,

@@ -174,5 +174,5 @@ class ExplicitEngine(Engine):
 
     def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
         """As in `Engine`, for motions of the length of a window."""
-        self._use(self.window)
+        self.use(self.window)
         return super().point_stiffness(nodes)

@@ -18,7 +18,7 @@ import numpy as np
 
 from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
 from lattice.energy import EnergyBooks
-from lattice.engine import EdgeContact, Engine, State, Step
+from lattice.engine import EdgeContact, Engine, NoContact, State, Step, StepError
 from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
@@ -71,6 +71,7 @@ class Sheet:
         self.present = np.ones(grid.nodes, bool)
         self.state = State.rest(grid.nodes)
         self.engine = Engine(grid, ice, springs, held_in_plane=held, damping=damping, alpha=alpha)
+        self.engine.use(dt)
         self.energy = EnergyBooks(self.engine)
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
@@ -93,6 +94,22 @@ class Sheet:
             self._drop_long_step()
             self._longest = max(1, round(self._longest_time / dt))
             self.dt, self._windows = dt, min(2, self._longest)
+    def rest_under(self, force_u: Array, force_q: Array) -> None:
+        """Puts the unbroken sheet into equilibrium with forces (n, 2), (n, 3); StepError if they break it."""
+        self.state = self.engine.equilibrium(force_u, force_q)
+        self.utilisation = self._utilisation(self.state)
+        if self.utilisation.max() >= 1.0:
+            raise StepError(f"the sheet at rest breaks under its load (utilisation {self.utilisation.max():.2f})")
+        self.energy.begin(self.state, self.live_cells, self.present)
+
+    def answer(self, nodes: IntArray) -> tuple[Array, Array]:
+        """Displacements (k, 2) [m/N] and velocities (k, 2) [m/(N s)] of nodes in x and z, at the end of a window in
+        which one newton has pressed on each of them, in x and in z."""
+        force_u, force_q = np.zeros((self.grid.nodes, 2)), np.zeros((self.grid.nodes, 3))
+        force_u[nodes, 0] = force_q[nodes, 0] = 1.0
+        s = self.engine.step(0.0, self.dt, State.rest(self.grid.nodes), force_u, force_q, NoContact()).state
+        return (np.column_stack((s.u[nodes, 0], s.q[nodes, 0])),
+                np.column_stack((s.u_dot[nodes, 0], s.q_dot[nodes, 0])))
 
     def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
                 release: Callable[[IntArray], None]) -> Outcome:

@@ -46,6 +46,12 @@ def settle(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], volume
     random = np.random.default_rng(seed)
     for key in sorted(fronts):
         _fill(layer, key, *fronts[key], volume / len(fronts), random, lengths)
+    return rest(layer, fronts, longest=longest, window=window)
+
+
+def rest(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], *, longest: float = 300.0,
+         window: float = 0.5) -> Pile:
+    """Let the blocks come to rest under the sheet as it is now; arguments as in `settle`."""
     domain, layer.domain, layer.hold_across = layer.domain, Domain(), True
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
     calm, steps = 1.0, round(window / layer.physics.substep)

@@ -134,7 +134,8 @@ class RubbleLayer:
         return sorted((b for s in self.sections.values() for b in s.blocks), key=lambda b: b.id)
 
     def set_sheet(self, section: int, x: Array, z: Array, front: float, velocity: Array, thickness: float,
-                  stiffness: tuple[float, float], applied: tuple[float, float] = (0.0, 0.0)) -> None:
+                  stiffness: tuple[float, float], inertia: tuple[float, float],
+                  applied: tuple[float, float] = (0.0, 0.0)) -> None:
         """Where the sheet is at the start of a window; meanings as in `coupling.interface.SheetEdge`.
 
         ``applied`` is the rubble's force (Fx, Fz) that the lattice already carries in this position; see `sheet`.
@@ -143,7 +144,7 @@ class RubbleLayer:
         if len(x) == 0 or len(x) != len(z) or (np.diff(x) >= 0).any() or front < x[0]:
             raise ValueError(f"sheet in section {section}: node x must decrease, front {front:g} lie ahead; got {x}")
         speed = np.array(velocity, dtype=np.float64).reshape(len(x), 2)
-        self.section(section).set_sheet(x, z, float(front), speed, thickness, stiffness, applied)
+        self.section(section).set_sheet(x, z, float(front), speed, thickness, stiffness, inertia, applied)
 
     def remove_sheet(self, section: int) -> None:
         """The lattice has no ice in this section any more."""

@@ -108,12 +108,13 @@ class Section:
         self.changed()
 
     def set_sheet(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
-                  stiffness: tuple[float, float], applied: tuple[float, float] = (0.0, 0.0)) -> None:
+                  stiffness: tuple[float, float], inertia: tuple[float, float],
+                  applied: tuple[float, float] = (0.0, 0.0)) -> None:
         """Where the sheet is at the start of a window; see `SheetBody.follow`."""
         if self.sheet is None:
             self.sheet = SheetBody(self.space, self.physics, x, z, velocity)
             self.changed()
-        self.sheet.follow(x, z, front, velocity, thickness, stiffness, applied)
+        self.sheet.follow(x, z, front, velocity, thickness, stiffness, inertia, applied)
 
     def remove_sheet(self) -> None:
         """Take the sheet out of the section."""

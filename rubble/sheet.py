@@ -1,20 +1,17 @@
 """The sheet as the rubble of one section meets it: a body on springs, because real sheets yield.
 
-A kinematic sheet would jam blocks against the structure with unlimited force. Here the sheet's edge is a body of mass
-``M`` without rotation, tied by a spring-damper in x and in z to a driver that moves with the lattice. A block caught
-between it and the structure is pressed with k times the yield of the edge, no more; what limits the force further
+A kinematic sheet would jam blocks against the structure with unlimited force. Here the sheet's edge is a body
+without rotation, tied by a spring in x and in z to a driver that moves as the lattice predicts. A block caught between
+it and the structure is pressed with what it takes to move this oscillator, no more; what limits the force further
 (crushing, failure) happens in the lattice, which receives the contact forces.
 
-Spring and damper act implicitly (backward Euler). With u the offset from the driver, w its rate and J the contact
-impulse, ``(m + c dt + k dt^2) (w' - w) = dt [-k (u + dt w) - c w - F_a] + J``: the solver's mass is
-``M = m + c dt + k dt^2``, the bracket is an ordinary force, and every stiffness is stable. Damping is critical,
-c = 2 sqrt(k m), which gives ``sqrt(M) = sqrt(m) + dt sqrt(k)``. M is one number: the stiffer direction has the mass m
-that was asked for, the softer one a somewhat larger m, ``sqrt(m_i) = sqrt(M) - dt sqrt(k_i)``.
+The spring acts implicitly (backward Euler). With u the offset from the driver, w its rate and J the contact impulse,
+``(m + k dt^2) (w' - w) = dt [-k (u + dt w) - F_a] + J``: the solver's mass is ``M = m + k dt^2``, the bracket is an
+ordinary force, and every stiffness is stable. M is one number for both directions: that of the lighter one; the other
+moves with a smaller m, and if that is not enough with ``k = M / dt^2``, as much as a sub-step resolves.
 
-``F_a`` is the rubble's force that the lattice already carries in the position handed over. With it the spring answers
-only to the change since, and compliance is not counted twice; without it (0) the edge yields by F / k on top.
-Between windows the driver jumps to where the lattice is, the body stays where it was: no contact is torn or pressed
-by a jump, and the spring keeps the body from drifting away.
+``F_a`` is the rubble's force that the driver's motion already answers to: the spring answers only to the change since.
+At the start of a window the edge stands where the lattice has it, and moves with it.
 """
 
 from __future__ import annotations
@@ -34,12 +31,12 @@ ICE_SHEET, STRUCTURE_CATEGORY = 0b10, 0b100  #: collision categories; the lattic
 def spring_force(spring: Array, dt: float, driver: Array, state: Array, force: Array) -> None:
     """Force on the sheet body, and one step of its driver.
 
-    spring = (k_x, k_z, c_x, c_z, F_ax, F_az); driver = (x, z, v_x, v_z), moved by dt; state as in `water`.
+    spring = (k_x, k_z, F_ax, F_az); driver = (x, z, v_x, v_z), moved by dt; state as in `water`.
     """
     for i in range(2):
         w = state[3 + i] - driver[2 + i]
         u = state[i] - driver[i] + dt * w
-        force[i] = -spring[i] * (u + dt * w) - spring[2 + i] * w - spring[4 + i]
+        force[i] = -spring[i] * (u + dt * w) - spring[2 + i]
         driver[i] += dt * driver[2 + i]
     force[2] = 0.0
 
@@ -53,36 +50,36 @@ class SheetBody:
         self.body.position = float(x[0]), float(z[0])
         self.body.velocity = tuple(velocity[0].tolist())
         self.driver = np.array([x[0], z[0], 0.0, 0.0])
-        self.spring = np.zeros(6)
+        self.spring = np.zeros(4)
         self.nodes = np.zeros((len(x), 4))
         self.shapes: list[pymunk.Poly] = []
         self._corners = np.zeros((0, 4, 2))
         space.add(self.body)
 
     def follow(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
-               stiffness: tuple[float, float], applied: tuple[float, float]) -> None:
-        """Take over the lattice's position for a window. The driver jumps to it, the body follows on its spring.
+               stiffness: tuple[float, float], inertia: tuple[float, float], applied: tuple[float, float]) -> None:
+        """Take over the lattice's motion in a window, from its start.
 
-        Between two hand-overs the body moves with those nodes that met rubble in the last window, weighted with the
-        force; without contact, with the foremost one.
+        The edge moves with those nodes that met rubble in the last window, weighted with the force; without contact,
+        with the foremost one.
         """
         force = np.abs(self.nodes[:, 2:]).sum(axis=1)
         total = float(force.sum())
         v = force @ velocity / total if len(force) == len(x) and total > 0.0 else velocity[0]
         self.driver[:] = x[0], z[0], v[0], v[1]
-        self._set_spring(np.array(stiffness, dtype=np.float64), applied)
+        self.body.position, self.body.velocity = (float(x[0]), float(z[0])), (float(v[0]), float(v[1]))
+        self._set_spring(np.array(stiffness, dtype=np.float64), np.array(inertia, dtype=np.float64), applied)
         self.nodes = np.column_stack([x, z, np.zeros((len(x), 2))])
-        corners = sheet_polygons(x, z, front, thickness, self.physics.slop / 2)
-        self._set_shapes(corners - self.driver[:2])
+        self._set_shapes(sheet_polygons(x, z, front, thickness, self.physics.slop / 2) - self.driver[:2])
+        self.space.reindex_shapes_for_body(self.body)
 
-    def _set_spring(self, k: Array, applied: tuple[float, float]) -> None:
-        if not (np.isfinite(k).all() and (k > 0).all()):
-            raise ValueError(f"sheet stiffness is {k} N/m; both values must be > 0 and finite")
-        dt = self.physics.substep
-        root = np.sqrt(self.physics.sheet_mass) + dt * np.sqrt(k.max())
-        self.body.mass = float(root**2)
-        self.spring[:2], self.spring[2:4] = k, 2 * np.sqrt(k) * (root - dt * np.sqrt(k))
-        self.spring[4:] = applied
+    def _set_spring(self, k: Array, m: Array, applied: tuple[float, float]) -> None:
+        if not (np.isfinite([k, m]).all() and (k > 0).all() and (m > 0).all()):
+            raise ValueError(f"sheet stiffness is {k} N/m, inertia {m} kg; all must be > 0 and finite")
+        dt2 = self.physics.substep**2
+        mass = float((m + k * dt2).min())
+        self.body.mass = mass
+        self.spring[:2], self.spring[2:] = np.minimum(k, mass / dt2), applied
 
     def _set_shapes(self, local: Array) -> None:
         """New corners (polygons, 4, 2) for the old shapes if their number is the same: contacts keep their history."""
@@ -91,7 +88,6 @@ class SheetBody:
                 return  # it has only drifted
             for shape, corners in zip(self.shapes, local.tolist(), strict=True):
                 shape.unsafe_set_vertices(corners)
-            self.space.reindex_shapes_for_body(self.body)
         else:
             self._replace_shapes(local)
         self._corners = local

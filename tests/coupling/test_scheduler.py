@@ -88,13 +88,13 @@ def scheduler(trace, scheme="serial-explicit", *, loss=0.0, share=0.0):
 
 
 def test_serial_explicit_is_drawn_as():
-    """The sheet under the last forces, then the rubble against the sheet as it is now."""
+    """The sheet under the last forces, then the rubble against the way that the sheet has gone."""
     trace = []
     s = scheduler(trace)
     frames = [s.macro_step(), s.macro_step()]
     assert trace == [
-        "sheet 0-50 under 0", "edge for sections []", "rubble sees sheet that carries 0", "rubble +50",
-        "sheet 50-100 under 1", "born piece", "edge for sections [3]", "rubble sees sheet that carries 1", "rubble +50",
+        "sheet 0-50 under 0", "path for sections []", "rubble sees sheet that carries 0", "rubble +50",
+        "sheet 50-100 under 1", "born piece", "path for sections [3]", "rubble sees sheet that carries 1", "rubble +50",
     ]
     assert [f.t_ns for f in frames] == [50, 100]
     np.testing.assert_array_equal(frames[0].load.sum(axis=0), [1.0, 0.0, 2.0])

@@ -151,7 +151,7 @@ def test_the_stiffness_of_the_rubbles_edge_changes_the_way_not_the_answer(k):
 def test_the_explicit_scheme_needs_an_edge_no_stiffer_than_the_sheet_is_in_a_window(k, grows):
     """The error of the force changes by -(k / K - 1) k_w / (k_w + k) from window to window, K that of the sheet.
 
-    K falls short of the stiffness of a stage where inertia rules the window: short windows let the forces alternate.
+    `coupling.yielding` therefore takes K from the whole window and from all sections together.
     """
     scheme = SCHEMES["serial-explicit"](TIGHT)
     s = Scheduler(Pusher(), Wall(k * STIFFNESS), Ledger(1.0), round(WINDOW * stubs.NS), scheme)

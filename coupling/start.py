@@ -1,0 +1,34 @@
+"""How a run begins: rubble of earlier ice lies under the floe, and both are at rest.
+
+The rubble settles under the sheet, the sheet bends up under the rubble, the rubble settles under the bent sheet, until
+the force between them has found its value. The floe then just touches the structure.
+"""
+
+from __future__ import annotations
+
+from coupling.interface import SheetForces, SimulationError
+from coupling.rubble_port import RubblePort
+from coupling.sheet_port import SheetPort
+
+CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
+ROUNDS = 20
+
+
+def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, seed: int) -> None:
+    """Settles ``volume`` [m^3] of rubble in front of the structure with the sheet in equilibrium on it."""
+    sections = rubble.front_sections()
+    pile = rubble.fill(volume, seed, sheet.edges(sections))
+    lift = _lift(rubble.forces_on_sheet())
+    for _ in range(ROUNDS):
+        sheet.rest_under(rubble.forces_on_sheet())
+        rubble.rest(sheet.edges(sections))
+        before, lift = lift, _lift(rubble.forces_on_sheet())
+        if abs(lift - before) <= CHANGE * pile.force:
+            sheet.rest_under(rubble.forces_on_sheet())
+            return
+    raise SimulationError(f"initial rubble and sheet found no rest in {ROUNDS} rounds: the lift on the sheet still "
+                          f"changes from {before:.3g} to {lift:.3g} N; give less rubble (rubble.initial_volume)")
+
+
+def _lift(forces: SheetForces) -> float:
+    return float(forces.force[:, 2].sum())
