@@ -79,8 +79,8 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
     held = np.zeros((grid.nodes, 2), bool)
     if s.back != "free":
         held[grid.edge_nodes("x-")] = (True, s.back == "held")
-    if s.sides == "held":
-        held[grid.edge_nodes("y-")] = held[grid.edge_nodes("y+")] = True
+    if s.sides != "free":
+        held[np.concatenate((grid.edge_nodes("y-"), grid.edge_nodes("y+")))] |= (s.sides == "held", True)
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     window, alpha = scenario.coupling.window, scenario.ice.material_damping
     if scenario.fracture.propagation == "dynamic":

@@ -84,7 +84,7 @@ class Scenario:
     """A checked scenario. Sections are attributes: ``scenario.ice.thickness`` [SI]."""
 
     name: str  #: of the folder or file, without path
-    text: str  #: of the file as written, with its sources as comments
+    text: str  #: of the file, and of its base, as written, with their sources as comments
     raw: dict[str, Any]  #: parsed text with the overrides applied
     model: ScenarioModel
     overrides: tuple[str, ...] = ()
@@ -125,11 +125,7 @@ class Scenario:
 def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     """Read a scenario folder, a TOML file, or a shipped scenario by name; ``overrides`` are ``a.b=v`` texts."""
     file = _locate(path)
-    try:
-        text = file.read_text(encoding="utf-8")
-        raw = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ScenarioError(f"{file}: not valid TOML: {error}; correct that line") from None
+    text, raw = _read(file)
     overrides = tuple(overrides)
     overridden = {_apply(raw, item) for item in overrides}
     try:
@@ -145,6 +141,34 @@ def find_scenarios(folders: Sequence[str | Path] = ()) -> list[Path]:
     homes = [Path(f) for f in folders] or [Path("scenarios"), Path(__file__).parents[1] / "scenarios"]
     found = {file.parent.resolve() for home in homes for file in home.glob("*/scenario.toml")}
     return sorted(found, key=lambda folder: folder.name)
+
+
+def _read(file: Path, inner: tuple[Path, ...] = ()) -> tuple[str, dict[str, Any]]:
+    """Text and tables of a file on top of those of its ``base``, a path beside it: for what cases have in common."""
+    if file.resolve() in inner:
+        raise ScenarioError(f"{file}: is its own base; leave the key base out of one of the files")
+    try:
+        text = file.read_text(encoding="utf-8")
+        raw = tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ScenarioError(f"{file}: not valid TOML: {error}; correct that line") from None
+    base = raw.pop("base", None)
+    if base is None:
+        return text, raw
+    under = file.parent / base if isinstance(base, str) else file
+    if not isinstance(base, str) or not under.is_file():
+        raise ScenarioError(f"{file}: base = {base!r} is no file; give a path from the folder of this file")
+    common, table = _read(under, (*inner, file.resolve()))
+    return f"{common}\n# ---- {file.name} ----\n{text}", _merged(table, raw)
+
+
+def _merged(under: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    """Tables of ``under`` with the keys of ``over`` in their place."""
+    out = dict(under)
+    for key, value in over.items():
+        old = out.get(key)
+        out[key] = _merged(old, value) if isinstance(old, dict) and isinstance(value, dict) else value
+    return out
 
 
 def _locate(path: str | Path) -> Path:

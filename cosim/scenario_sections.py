@@ -106,7 +106,7 @@ class Sheet(Section):
     nodes: NodeCounts  #: along x and y
     axis_from_side: LengthOrZero = None  #: structure's axis from the side edge y_min [m]; default half the width
     back: Literal["held", "roller", "free"]  #: in plane; a roller holds the ice along the drift, not across
-    sides: Literal["held", "free"] = "free"
+    sides: Literal["held", "roller", "free"] = "free"  #: in plane; a roller holds the ice across the drift, not along
 
     @property
     def spacing(self) -> float:

@@ -181,3 +181,25 @@ def test_every_value_has_its_source_and_every_case_its_reference(case):
             assert "#" in line, line
     assert load_reference(s.folder).features
     assert 30 <= len((s.folder / "SOURCE.md").read_text().splitlines()) <= 60
+
+
+def test_cases_share_a_base(tmp_path):
+    """Keys of the case replace those of its base, table by table; what is recorded stands alone."""
+    shared = load_scenario("scenarios/van_vliet_2018_floe_165m")
+    (tmp_path / "common.toml").write_text(shared.text)
+    case = tmp_path / "case.toml"
+    case.write_text('base = "common.toml"\n[scenario]\ntitle = "a case"\n[sheet]\nnodes = [40, 40]\n')
+    found = load_scenario(case)
+    assert found.title == "a case" and found.sheet.nodes == (40, 40)
+    assert found.sheet.length == 165.0 and found.ice == shared.ice and "Table 6-1" in found.text
+    (tmp_path / "alone.toml").write_text(found.resolved_toml())
+    assert load_scenario(tmp_path / "alone.toml").model == found.model
+
+
+@pytest.mark.parametrize("line, words", [('base = "nowhere.toml"', "nowhere.toml"), ("base = 3", "base = 3"),
+                                         ('base = "case.toml"', "its own base")])
+def test_a_base_that_cannot_be_read_is_named(tmp_path, line, words):
+    case = tmp_path / "case.toml"
+    case.write_text(line + "\n")
+    with pytest.raises(ScenarioError, match=words):
+        load_scenario(case)
