@@ -28,6 +28,7 @@ from lattice.stiffness import Springs
 LONG_STEP_ERROR = 2e-4  #: largest estimated error of a displacement in a long step, as share of the thickness
 QUIET = 8  #: windows without a failure before the next long step: waves of the crack must have died down
 LOCATION = 1e-4  #: share of a window to which a failure is located
+TURNED = 0.1  #: rotation out of plane at which a hanging piece leaves: 1 - cos = 0.5 %, the lattice is linear [rad]
 
 
 @dataclass
@@ -119,7 +120,7 @@ class Sheet:
         its nodes and must renew the edge of ``contact``.
         """
         force_u[~self.present], force_q[~self.present] = 0.0, 0.0
-        if force_u.any() or force_q.any():
+        if force_u.any() or force_q.any() or self._rotation().max() > TURNED:
             self._drop_long_step()
         else:
             out = self._from_long_step(t, force_u, force_q, contact)
@@ -178,6 +179,9 @@ class Sheet:
     def _solve_window(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
                       release: Callable[[IntArray], None]) -> Outcome:
         out = Outcome(np.empty((0, 3)), np.empty((0, 3)))
+        if self._rotation().max() > TURNED:
+            self._tear_off(t, contact, out, release)
+            force_u[~self.present], force_q[~self.present] = 0.0, 0.0
         while True:
             step = self.engine.step(t, self.dt, self.state, force_u, force_q, contact)
             utilisation = self._utilisation(step.state)
@@ -237,6 +241,20 @@ class Sheet:
             self.energy.book_departure(piece, live & ~self.live_cells, self.state)
             out.pieces.append(piece)
             release(piece)
+
+    def _rotation(self) -> Array:
+        """Larger of the two rotations of each node that is present, (nodes,) [rad]."""
+        return np.where(self.present, np.abs(self.state.q[:, 1:]).max(axis=1), 0.0)
+
+    def _tear_off(self, t: float, contact: EdgeContact, out: Outcome, release: Callable[[IntArray], None]) -> None:
+        """Parts a piece that has turned out of the range of small rotations, with what has gone half as far."""
+        turned = (self._rotation() > 0.5 * TURNED)[self.grid.cell_nodes]
+        cells = np.flatnonzero(self.live_cells & turned.any(axis=1) & ~turned.all(axis=1)).tolist()
+        out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes))[0]
+        for cell in cells:
+            self._fail(cell)
+        out.failed += cells
+        self._release_loose(out, release)
 
     def retire(self, nodes: IntArray) -> None:
         """Takes nodes out whose ice is gone (crushed), with the cells that they hold up."""

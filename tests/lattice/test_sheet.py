@@ -80,3 +80,27 @@ def test_a_rotating_floe_does_not_fail_by_rotating():
     out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
     assert not out.failed
     assert sheet.utilisation.max() < 1e-3
+
+
+def test_a_hanging_piece_that_has_turned_too_far_leaves():
+    """Two cells hold a strip; once it has turned by more than 0.1 rad it is handed over with all that it has."""
+    sheet, _ = pressed_down(0.05)
+    hinge = GRID.nx - 4
+    piece = np.zeros((GRID.nx, GRID.ny), bool)
+    piece[hinge + 1:, 4:8] = True
+    corners = piece.ravel()[GRID.cell_nodes]
+    for cell in np.flatnonzero(corners.any(axis=1) & ~corners.all(axis=1)):
+        if not (GRID.cell_nodes[cell] // GRID.ny == hinge).any() or GRID.cell_nodes[cell][0] % GRID.ny not in (5, 6):
+            sheet._fail(int(cell))
+    sheet.state.q[piece.ravel(), 1] = 0.09
+    left = []
+    zero = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
+    sheet._limits = lambda: np.full(GRID.cells, np.inf)  # strength is not what ends it
+    sheet.advance(0.05, *zero, NoContact(), left.append)
+    assert not left
+    sheet.state.q[piece.ravel(), 1] = 0.11
+    mass = sheet.present.sum()
+    sheet.advance(0.10, *zero, NoContact(), left.append)
+    assert [sorted(p) for p in left] == [np.flatnonzero(piece.ravel()).tolist()]
+    assert sheet.present.sum() == mass - piece.sum()
+    assert sheet.energy.handed_over > 0.0
