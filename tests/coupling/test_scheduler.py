@@ -28,7 +28,7 @@ class StubSheet:
         self.trace.append(f"sheet {t_ns}-{t_ns + window_ns} under {rubble.force.sum():g}")
         fragments = ["piece"] if t_ns == window_ns else []
         self.mass -= 10.0 * len(fragments)
-        return SheetReport(np.array([1.0, 0.0, 2.0]), fragments, [])
+        return SheetReport(np.array([1.0, 0.0, 2.0]), {}, fragments, [])
 
     def edges(self, sections):
         self.trace.append(f"edge for sections {list(sections)}")
@@ -47,7 +47,7 @@ class StubRubble:
 
     def __init__(self, trace, loss=0.0, share=0.0):
         self.trace, self.mass, self.cleared_mass, self.power, self.loss = trace, 0.0, 0.0, 0.0, loss
-        self.windows, self.force, self.share, self.carried = 0, 0.0, share, 0.0
+        self.windows, self.force, self.share, self.carried, self.budget = 0, 0.0, share, 0.0, {}
 
     def save(self):
         return self.mass, self.windows, self.force
