@@ -32,10 +32,14 @@ def rows(run: RunData) -> list[dict[str, Any]]:
 
 
 def _row(run: RunData, when: str, time: str, axis: str, windows: slice) -> dict[str, Any]:
-    terms = {name.replace("_", " "): float(run.budget[f"{axis}_{name}"][windows].mean()) / 1e6
-             for name in (*TERMS, "residual")}
-    return {"when": when, "time": time, "component": axis.capitalize(),
-            "total": float(run.component(axis)[windows].mean()) / 1e6, "terms": terms}
+    length = (run.t_ns - run.begin_ns)[windows]
+
+    def mean(values: Array) -> float:
+        return float(np.average(values[windows], weights=length)) / 1e6
+
+    terms = {name.replace("_", " "): mean(run.budget[f"{axis}_{name}"]) for name in (*TERMS, "residual")}
+    return {"when": when, "time": time, "component": axis.capitalize(), "total": mean(run.component(axis)),
+            "terms": terms}
 
 
 def largest_residual(run: RunData) -> dict[str, float]:

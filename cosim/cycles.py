@@ -40,8 +40,7 @@ def encounter_time(run: RunData, n: int = 1, event: Kinds = "circumferential") -
     found = encounters(run, event)
     if not 1 <= n <= len(found):
         return None
-    window = int(run.metadata["window_ns"])
-    return float(run.t_ns[found[n - 1].event] - run.t_ns[found[n - 1].begin] + window) / NS
+    return float(run.t_ns[found[n - 1].event] - run.begin_ns[found[n - 1].begin]) / NS
 
 
 def mean_load(run: RunData, component: str = "fx", phase: str | None = None, after: Kinds | None = None,
@@ -52,7 +51,8 @@ def mean_load(run: RunData, component: str = "fx", phase: str | None = None, aft
     if begin is None or start is None:
         return None
     chosen = (run.t_ns > max(begin, round(start * NS))) & (run.t_ns <= end)
-    return float(run.component(component, phase)[chosen].mean()) if chosen.any() else None
+    length = (run.t_ns - run.begin_ns)[chosen]
+    return float(np.average(run.component(component, phase)[chosen], weights=length)) if chosen.any() else None
 
 
 def cycle_period(run: RunData, component: str = "fx", after: Kinds | None = None, before: Kinds | None = None,
@@ -65,13 +65,15 @@ def cycle_period(run: RunData, component: str = "fx", after: Kinds | None = None
     begin, end = between(run, after, before)
     if begin is None:
         return None
-    load = run.component(component)[(run.t_ns > begin) & (run.t_ns <= end)]
-    if not len(load) or not load.max() > 0:
+    chosen = (run.t_ns > begin) & (run.t_ns <= end)
+    t_ns, load = run.t_ns[chosen], run.component(component)[chosen]
+    if len(load) < 3 or not load.max() > 0:
         return None
-    window = int(run.metadata["window_ns"]) / NS
-    even = uniform_filter1d(load, max(1, round(smooth / window)), mode="nearest")
+    step = int(np.diff(t_ns).min())  # windows of different length are read at the distance of the shortest
+    even = np.interp(np.arange(t_ns[0], t_ns[-1] + 1, step), t_ns, load)
+    even = uniform_filter1d(even, max(1, round(smooth * NS / step)), mode="nearest")
     peaks, _ = find_peaks(even, prominence=prominence * load.max())
-    return float(np.median(np.diff(peaks))) * window if len(peaks) > 2 else None
+    return float(np.median(np.diff(peaks))) * step / NS if len(peaks) > 2 else None
 
 
 def piece_length(run: RunData, event: Kinds = "circumferential") -> float | None:

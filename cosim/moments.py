@@ -43,8 +43,7 @@ def first_contact(run: RunData) -> float | None:
     loaded = np.flatnonzero(run.component("f") > 0)
     if not len(loaded):
         return None
-    window = int(run.metadata["window_ns"])
-    return float(run.t_ns[loaded[0]] - window) / NS
+    return float(run.begin_ns[loaded[0]]) / NS
 
 
 def between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[int | None, int]:

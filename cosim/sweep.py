@@ -30,24 +30,24 @@ RESULTS = (*(f"{c}_peak" for c in COMPONENTS), *(f"{c}_time" for c in COMPONENTS
 
 
 class MeanLoad:
-    """Observer: mean load of all windows (3,) [N]."""
+    """Observer: mean load over the run (3,) [N]."""
 
     def __init__(self) -> None:
-        self._sum, self._windows = np.zeros(3), 0
+        self._impulse, self._t_ns = np.zeros(3), 0
 
     def on_start(self, run_info: RunInfo) -> None:
         """Nothing to prepare."""
 
     def on_frame(self, frame: Frame) -> None:
-        self._sum += frame.load.sum(axis=0)
-        self._windows += 1
+        self._impulse += (frame.t_ns - self._t_ns) * frame.load.sum(axis=0)
+        self._t_ns = frame.t_ns
 
     def on_close(self) -> None:
         """Nothing to close."""
 
     @property
     def value(self) -> Array:
-        return self._sum / max(self._windows, 1)
+        return self._impulse / max(self._t_ns, 1)
 
 
 def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Row:

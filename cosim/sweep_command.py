@@ -17,8 +17,8 @@ from cosim.scenario import load_scenario
 from cosim.sweep import COMPONENTS, RESULTS, Row, sweep
 from cosim.variants import Variant, parse_axis, variants
 
-COLUMNS = ("variant", "Fx [MN]", "at [s]", "ratio", "Fz [MN]", "at [s]", "ratio", "breaking", "rotating", "sliding",
-           "mean Fx", "wall [s]")
+COLUMNS = ("variant", "Fx", "at [s]", "ratio", "Fz", "at [s]", "ratio", "breaking", "rotating", "sliding", "mean Fx",
+           "wall [s]")
 
 
 def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int) -> dict[str, Any]:
@@ -54,10 +54,10 @@ def write_csv(content: dict[str, Any], out: Path) -> None:
 
 def show(content: dict[str, Any]) -> None:
     """The table for people."""
-    title = f"{content['scenario']}: peaks, ratio to the base, largest Fx of each phase"
+    title = f"{content['scenario']}: peaks [MN], ratio to the base, largest Fx of each phase"
     table = Table(title=title, box=box.SIMPLE, title_justify="left", padding=(0, 0, 0, 1))
     for k, name in enumerate(COLUMNS):
-        table.add_column(Text(name), justify="right" if k else "left", min_width=0 if k else 30)
+        table.add_column(Text(name), justify="right" if k else "left", min_width=0 if k else 28)
     for row in content["variants"]:
         if row["error"] is not None:
             table.add_row(row["variant"], "failed", *[""] * 10)

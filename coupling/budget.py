@@ -18,9 +18,9 @@ What is left is ``residual``. It is rounding wherever the sheet's window is solv
 those of its scheme and the rubble's impulses are summed in every sub-step. In windows that are read off a long step it
 is the error of that step, on the explicit engine that of the trapezoidal rule between two evaluations of the contact.
 
-The staggering is no error of the sum but of the coupling: the sheet feels the rubble of the window before, and what a
-piece carries is lost when it leaves the lattice. Over time it telescopes: its impulse until now is the force of one
-window times its length, whatever the run did before.
+The staggering is no error of the sum but of the coupling: the sheet feels the rubble of the window before. Over time it
+telescopes to the force of one window, but for what nodes should have felt in the window in which they leave the
+lattice: that is lost, and shows as a mean of this term.
 """
 
 from __future__ import annotations

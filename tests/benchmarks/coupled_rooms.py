@@ -5,8 +5,8 @@
 Prints simulated over wall time (goal: at least 3 on two cores; beside other work the processor time says more) and the
 share of each room. Timers stand at the doors of the rooms and count what happens inside without the rooms that are
 entered from there; they cost about 1 %. The compiled loop of the rubble is one room to Python: its water and contact
-kernels are timed alone, on the state after every 20th loop, and the rest is the step of pymunk. With more threads the
-loops of the sections overlap; their sum is then divided by the number of threads.
+kernels are timed alone, with warm caches, on the state after every 20th loop, and the rest is the step of pymunk. With
+more threads the loops of the sections overlap; their sum is then divided by the number of threads.
 """
 
 from __future__ import annotations
