@@ -1,21 +1,22 @@
 """Moments of a recorded run that features count from: first contact, events, encounters.
 
 An *encounter* is one build-up and break of the sheet: from the first touch, or from the end of the encounter before,
-to the drop of the load after the sheet has broken off. Several pieces that break off in one drop are one encounter.
+to the drop of the load after the sheet has broken off. Several pieces that break off in one drop are one encounter, and
+so are those that follow before the load has built up again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cosim.run_data import RunData
-from coupling.interface import NS, Event
+from coupling.interface import NS, Array, Event
 
 Kinds = str | Sequence[str]
-DROP = 0.5  #: share of an encounter's largest load below which the load has dropped
+DROP = 0.5  #: share of an encounter's largest load below which the load has dropped, and from which it builds up
 
 
 @dataclass(frozen=True)
@@ -65,11 +66,19 @@ def encounters(run: RunData, event: Kinds = "circumferential", component: str = 
         begin = int(np.searchsorted(run.t_ns, round(start * NS), side="right"))
     at = sorted({int(np.searchsorted(run.t_ns, e.t_ns)) for e in events_of(run, event)} - {len(load)})
     for k, now in enumerate(at):
-        if found and now <= found[-1].end:
-            continue  # it breaks on while the load drops
+        if found and (now <= found[-1].end or not _built_up(load[begin:now + 1])):
+            found[-1] = replace(found[-1], end=max(found[-1].end, now))  # it goes on breaking
+            begin = found[-1].end + 1
+            continue
         until = at[k + 1] if k + 1 < len(at) else len(load)
         low = np.flatnonzero(load[now:] < DROP * load[begin:now + 1].max())
         end = now + (int(low[0]) if len(low) else int(load[now:until].argmin()))
         found.append(Encounter(begin, now, end))
         begin = end + 1
     return found
+
+
+def _built_up(load: Array) -> bool:
+    """Whether a load has risen to its largest value from less than `DROP` of it."""
+    top = int(load.argmax())
+    return bool(load[:top + 1].min() < DROP * load[top])
