@@ -22,7 +22,7 @@ from lattice.explicit import ExplicitEngine
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.march import Marched, NodeForces
-from lattice.reaction import Support, between
+from lattice.reaction import Mean, Support, between
 from lattice.sheet import Outcome, Sheet, edge_displacement
 from lattice.stiffness import Springs
 
@@ -81,8 +81,10 @@ class ExplicitSheet(Sheet):
                 self._ease()
         self._end(t + self.dt, self._loads(force_u, force_q), contact, out)
         self._means(out, impulse / self.dt, contact.nodes)
-        mean, applied = (self._u_sum / self.dt, self._q_sum / self.dt), (self._applied / self.dt).tolist()
-        out.reaction = between(self.support, start, self.state, self.dt, mean, self.live_cells, present, tuple(applied))
+        mean = State(self._u_sum / self.dt, self._q_sum / self.dt, start.u_dot, start.q_dot)
+        applied = tuple((self._applied / self.dt).tolist())
+        out.reaction = between(self.support, start, self.state, self.dt, Mean(mean, mean, 1.0, 0.0), self.live_cells,
+                               present, applied)
         return out
 
     def _loads(self, force_u: Array, force_q: Array) -> NodeForces:

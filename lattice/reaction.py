@@ -13,6 +13,7 @@ while its contact is the mean of its two ends: the sum is then off by the error 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -21,7 +22,15 @@ from lattice.engine import GAMMA, Engine, State, Step
 from lattice.grid import Array, IntArray
 from lattice.springs import spring_force
 
-Mean = tuple[Array, Array]  #: u (n, 2) and q (n, 3), mean over a window [m], [rad]
+
+class Mean(NamedTuple):
+    """Mean of a displacement over a window: weighted states, plus ``slope`` [s] times velocity of a minus that of b."""
+
+    a: State
+    b: State
+    weight_a: float
+    weight_b: float
+    slope: float = 0.0
 
 
 @dataclass
@@ -43,32 +52,42 @@ class Support:
         grid = engine.grid
         self.engine = engine
         self.held = np.ascontiguousarray(held.reshape(grid.nodes, -1)[:, 0])
-        self._nodes = np.flatnonzero(self.held)
-        self._cells: IntArray = np.flatnonzero(np.isin(grid.cell_nodes, self._nodes).any(axis=1))
-        self._dof = np.ascontiguousarray(engine.dof_u[self._cells])
+        self._cells: IntArray = np.flatnonzero(self.held[grid.cell_nodes].any(axis=1))
+        self._around, local = np.unique(grid.cell_nodes[self._cells], return_inverse=True)  # nodes of these cells
+        local = local.reshape(-1, 4)
+        self._dof = (2 * local[:, :, None] + np.arange(2)).reshape(len(local), 8)
+        self._reacts = np.flatnonzero(self.held[self._around])
 
-    def applied(self, nodes: IntArray, force_x: Array, force_z: Array) -> tuple[float, float, float]:
-        """Sums of external forces on some nodes (k,): x, z, and the part of x that held nodes pass on at once [N]."""
+    def applied(self, nodes: IntArray | slice, force_x: Array, force_z: Array) -> tuple[float, float, float]:
+        """Sums of external forces on nodes (k,): x, z, and the part of x that held nodes pass on at once [N]."""
         return float(force_x.sum()), float(force_z.sum()), float(force_x[self.held[nodes]].sum())
 
-    def force(self, u: Array, gain: Array, live: np.ndarray) -> float:
-        """Along x on the sheet: mean for the mean displacement u (n, 2) [m] and mean velocity ``gain`` (n, 2) [N]."""
-        if not len(self._nodes):
+    def force(self, mean: Mean, a: State, b: State, dt: float, live: np.ndarray) -> float:
+        """Mean force along x on the sheet, which goes from a to b in ``dt`` [s], with elastic and material damping [N].
+        """
+        if not len(self._reacts):
             return 0.0
-        x = (u + self.engine.alpha * gain).ravel() if self.engine.alpha else u.ravel()
-        return float(spring_force(self._dof, *self.engine.sparse_u, live[self._cells], x)[2 * self._nodes].sum())
+        n, e = self._around, self.engine
+        x = mean.weight_a * mean.a.u[n] + mean.weight_b * mean.b.u[n]
+        if mean.slope:
+            x += mean.slope * (mean.a.u_dot[n] - mean.b.u_dot[n])
+        if e.alpha:
+            x += e.alpha / dt * (b.u[n] - a.u[n])
+        return float(spring_force(self._dof, *e.sparse_u, live[self._cells], x.ravel())[2 * self._reacts].sum())
 
 
 @njit(cache=True)
-def _sums(mean_q, q_0, q_1, v_0, v_1, u_0, u_1, k_f, C_q, M_q, M_u, present):
+def _sums(mean_a, mean_b, mean_va, mean_vb, weights, q_0, q_1, v_0, v_1, u_0, u_1, k_f, C_q, M_q, M_u, present):
     """Sums over the nodes that are present: k_f w, C times the way of w, mass times the gain of velocity in z and x.
 
-    ``q`` (n, 3) and, after it, velocities v = q_dot (n, 3) and u_dot (n, 2), at the start and at the end of a window.
+    ``mean_...`` (n, 3) and ``weights`` (3,) as in `Mean`; ``q``, v = q_dot (n, 3) and u = u_dot (n, 2) at the start and
+    at the end of a window.
     """
     lift = brake = up = ahead = 0.0
     for n in range(len(present)):
         if present[n]:
-            lift += k_f[3 * n] * mean_q[n, 0]
+            w = weights[0] * mean_a[n, 0] + weights[1] * mean_b[n, 0] + weights[2] * (mean_va[n, 0] - mean_vb[n, 0])
+            lift += k_f[3 * n] * w
             brake += C_q[3 * n] * (q_1[n, 0] - q_0[n, 0])
             up += M_q[3 * n] * (v_1[n, 0] - v_0[n, 0])
             ahead += M_u[2 * n] * (u_1[n, 0] - u_0[n, 0])
@@ -79,20 +98,19 @@ def between(support: Support, a: State, b: State, dt: float, mean: Mean, live: n
             applied: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Reaction:
     """Means over a time ``dt`` [s] in which the nodes that are ``present`` go from a to b; ``applied`` as in `Support`.
     """
-    e = support.engine
-    lift, brake, up, ahead = _sums(mean[1], a.q, b.q, a.q_dot, b.q_dot, a.u_dot, b.u_dot, e.k_f, e.C_q, e.M_q, e.M_u,
-                                   present)
-    held = support.force(mean[0], (b.u - a.u) / dt, live)
+    e, weights = support.engine, (mean.weight_a, mean.weight_b, mean.slope)
+    lift, brake, up, ahead = _sums(mean.a.q, mean.b.q, mean.a.q_dot, mean.b.q_dot, weights, a.q, b.q, a.q_dot, b.q_dot,
+                                   a.u_dot, b.u_dot, e.k_f, e.C_q, e.M_q, e.M_u, present)
+    held = support.force(mean, a, b, dt, live)
     return Reaction((0.0, -lift), (0.0, -brake / dt), (-ahead / dt, -up / dt), (held - applied[2], 0.0), applied[:2])
 
 
 def of_step(step: Step) -> Mean:
     """Mean over a step as its scheme weights it."""
-    (first, second), b = (stage.state for stage in step.stages), 1.0 - GAMMA
-    return b * first.u + GAMMA * second.u, b * first.q + GAMMA * second.q
+    first, second = (stage.state for stage in step.stages)
+    return Mean(first, second, 1.0 - float(GAMMA), float(GAMMA))
 
 
 def of_cubic(a: State, b: State, dt: float) -> Mean:
     """Mean of the cubic through two states ``dt`` apart."""
-    c = dt / 12.0
-    return 0.5 * (a.u + b.u) + c * (a.u_dot - b.u_dot), 0.5 * (a.q + b.q) + c * (a.q_dot - b.q_dot)
+    return Mean(a, b, 0.5, 0.5, dt / 12.0)

@@ -200,7 +200,7 @@ class Sheet:
             self._release_loose(out, release)
             force_u[~self.present], force_q[~self.present] = 0.0, 0.0
         self.energy.book_step(step, force_u, force_q, contact.nodes, self.live_cells, self.present)
-        applied = self.support.applied(np.arange(self.grid.nodes), force_u[:, 0], force_q[:, 0])
+        applied = self.support.applied(slice(None), force_u[:, 0], force_q[:, 0])
         out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), self.live_cells,
                                self.present, applied)
         self.state, self.utilisation = step.state, utilisation

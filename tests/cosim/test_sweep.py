@@ -11,7 +11,7 @@ import pytest
 from cosim import sweep as sweeping
 from cosim.errors import FailedError, InputError
 from cosim.sweep import sweep, with_ratios
-from cosim.sweep_command import write_csv
+from cosim.sweep_command import show, write_csv
 from cosim.tornado import tornado
 from cosim.variants import Axis, Variant, parse_axis, variants
 
@@ -128,3 +128,12 @@ def test_a_wrong_base_is_refused_before_anything_runs():
     done = subprocess.run([sys.executable, "-c", "from cosim.cli import main; main()", "sweep", CASE, "--set",
                            "ice.thicknes=1 m", "--vary", "a.b=1"], capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "did you mean" in done.stderr
+
+
+def test_a_load_that_still_grows_at_the_end_is_pointed_out(content, monkeypatch):
+    lines = []
+    monkeypatch.setattr("cosim.sweep_command.print_line", lines.append)
+    times = [{"fx_time": 1.0, "fz_time": 0.5}, {"fx_time": 0.5, "fz_time": 0.9}, {"fx_time": 0.1, "fz_time": 0.1}, {}]
+    show({**content, "variants": [row | t for row, t in zip(content["variants"], times, strict=True)]})
+    assert [line.split(":")[0] for line in lines] == ["largest load at the end", "failed"]
+    assert "base" in lines[0]
