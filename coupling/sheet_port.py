@@ -38,9 +38,9 @@ class SheetReport:
     """What the sheet did in a window."""
 
     load: Array  #: (3,) mean force of the sheet on the structure [N]
-    budget: Pairs = field(default_factory=dict)  #: what carries the sheet, see `coupling.budget`
     fragments: list[Fragment] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    budget: Pairs = field(default_factory=dict)  #: what carries the sheet, see `coupling.budget`
 
 
 class SheetPort:
@@ -95,7 +95,7 @@ class SheetPort:
         r = out.reaction
         budget = {"pressed_sheet": r.foundation, "drag": r.drag, "inertia": r.inertia, "held": r.held,
                   "staggering": r.applied}
-        return SheetReport(load, budget, self._fragments, events)
+        return SheetReport(load, self._fragments, events, budget)
 
     def save(self) -> Memory:
         """The sheet, its edge and its contact between two windows, for `restore`."""

@@ -28,7 +28,7 @@ class StubSheet:
         self.trace.append(f"sheet {t_ns}-{t_ns + window_ns} under {rubble.force.sum():g}")
         fragments = ["piece"] if t_ns == window_ns else []
         self.mass -= 10.0 * len(fragments)
-        return SheetReport(np.array([1.0, 0.0, 2.0]), {}, fragments, [])
+        return SheetReport(np.array([1.0, 0.0, 2.0]), fragments, [])
 
     def edges(self, sections):
         self.trace.append(f"edge for sections {list(sections)}")
