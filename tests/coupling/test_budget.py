@@ -179,3 +179,15 @@ def test_staggering_telescopes(short_run):
     _, budgets, _ = short_run
     shift = np.array([b["fz_staggering"] for b in budgets])
     assert np.abs(np.cumsum(shift)).max() < 4.0 * np.abs(shift).max()
+
+
+def test_an_implicit_scheme_leaves_no_staggering():
+    """Where sheet and rubble agree on their force the term vanishes with the tolerance, and the sum still closes."""
+    largest = {}
+    for scheme in ("serial-explicit", "serial-implicit"):
+        scheduler = build(load_scenario("van_vliet_2018_floe_165m", [*CASE, f"coupling.scheme='{scheme}'"]))
+        frames = [scheduler.macro_step() for _ in range(20)]
+        largest[scheme] = max(abs(f.budget["fz_staggering"]) for f in frames)
+        load = max(abs(f.load.sum(axis=0)[2]) for f in frames)
+        assert max(abs(f.budget["fz_residual"]) for f in frames) < 1e-9 * load
+    assert largest["serial-implicit"] < 0.1 * largest["serial-explicit"]
