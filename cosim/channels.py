@@ -6,7 +6,7 @@ scenes as well and plots `cosim.Load`. Every message is in the frame ``world``; 
 | topic | schema | when |
 |---|---|---|
 | /structure/scene, /structure/points, /tf | SceneUpdate, PointCloud, FrameTransforms | once |
-| /load/structure, /ledger | cosim.Load, cosim.Ledger | every window |
+| /load/structure, /load/budget, /ledger | cosim.Load, cosim.Ledger, cosim.Ledger | every window |
 | /events, /log | cosim.Event, foxglove.Log | when it happens |
 | /ice/nodes, /rubble/scene, /rubble/outline | PointCloud, SceneUpdate, PointCloud | every recorded frame |
 | /ice/sheet | SceneUpdate | recorded frames in which a cell has failed, and every few others |
@@ -30,6 +30,7 @@ SCHEMAS: dict[str, Any] = {
     "/structure/scene": SceneUpdate, "/structure/points": PointCloud, "/tf": FrameTransforms,
     "/load/structure": messages.Load, "/ledger": messages.Ledger, "/events": messages.Event, "/log": Log,
     "/ice/nodes": PointCloud, "/ice/sheet": SceneUpdate, "/rubble/scene": SceneUpdate, "/rubble/outline": PointCloud,
+    "/load/budget": messages.Ledger,
 }
 Packed = tuple[str, bytes]  #: topic and serialised message
 
@@ -52,16 +53,17 @@ def load(t_ns: int, by_phase: Array) -> Packed:
     return "/load/structure", scenes.as_bytes(message)
 
 
-def ledger(t_ns: int, terms: dict[str, float]) -> Packed:
-    """`cosim.Ledger`: named balances."""
+def ledger(t_ns: int, terms: dict[str, float], topic: str = "/ledger") -> Packed:
+    """`cosim.Ledger`: named balances, or on ``/load/budget`` what carries the load [N]."""
     message = messages.Ledger(name=list(terms), value=[float(v) for v in terms.values()])
     messages.stamp(message.stamp, t_ns)
-    return "/ledger", scenes.as_bytes(message)
+    return topic, scenes.as_bytes(message)
 
 
 def event(item: Event) -> Iterator[Packed]:
     """An event as data and as a line of the log."""
     numbers = dict(zip(("fx", "fy", "fz", "x", "y", "z"), (*item.force, *item.position), strict=True))
+    numbers |= {"length": item.length, "area": item.area}
     message = messages.Event(kind=item.kind, cells=int(item.cells), text=item.text,
                              **{name: float(value) for name, value in numbers.items()})
     messages.stamp(message.stamp, item.t_ns)

@@ -1,4 +1,4 @@
-"""The command line: ``cosim run | replay | compare | report | verify | info | recover | list``.
+"""The command line: ``cosim run | sweep | replay | compare | report | verify | info | recover | list``.
 
 Only this file exits. Every expected error is one line on standard error: exit 2 for a bad input, 1 for a failed run or
 check. With ``--json`` standard output holds one JSON object and nothing else. Slow imports stay inside the commands.
@@ -60,6 +60,35 @@ def _simulate(scenario: Any, observers: list[Any]) -> dict[str, Any]:
     finally:
         for observer in observers:
             observer.on_close()
+
+
+@app.command("sweep")
+def sweep_variants(
+    scenario: ScenarioArgument,
+    vary: Annotated[list[str], typer.Option("--vary", metavar="A.B=V,V", help="a key and its values, repeatable")],
+    overrides: SetOption = None,
+    grid: Annotated[bool, typer.Option("--grid/--one-at-a-time", help="all combinations, or each value alone")] = False,
+    workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None,
+    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Run variants of a scenario and put their loads side by side."""
+    from cosim import sweep_command as command
+
+    for path in (output, plot):
+        if path is not None:
+            _writable(path)
+    content = command.run_sweep(scenario, vary, overrides or (), grid, workers)
+    if output is not None:
+        command.write_csv(content, output)
+    _print_json(content) if as_json else command.show(content)
+    if plot is not None:
+        from cosim.tornado import tornado
+
+        tornado(content, plot)
+    if content["failed"]:
+        raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")
 
 
 @app.command()

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cosim.features import QUANTITIES
+from cosim.features import QUANTITIES, shares_at_peak
 from cosim.reference import Feature, FeatureError, Reference, load_reference, parse_reference
 from cosim.run_data import RunData
 
@@ -47,8 +47,12 @@ def reference_of(run: RunData, path: str | Path | None) -> tuple[str, Reference]
 
 
 def to_json(run: RunData, name: str, rows: list[Row]) -> dict[str, Any]:
-    """``measured`` is a number; a range gives its middle, and ``measured_range`` both ends."""
-    return {"run": run.name, "reference": name, "features": [_json_row(row) for row in rows], "series": None}
+    """``measured`` is a number; a range gives its middle, and ``measured_range`` both ends.
+
+    ``peaks`` holds the load and the share of each phase at the peak of Fx, Fz and the resultant.
+    """
+    return {"run": run.name, "reference": name, "features": [_json_row(row) for row in rows], "series": None,
+            "peaks": shares_at_peak(run)}
 
 
 def _json_row(row: Row) -> dict[str, Any]:

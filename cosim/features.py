@@ -5,29 +5,15 @@ None is an answer: a run without a split has no load at the split. Nothing is fi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from cosim import cycles
+from cosim.moments import Kinds, between, first_contact, first_event
 from cosim.run_data import RunData
-from coupling.interface import NS, PHASES, Array, Event, IntArray
-
-Kinds = str | Sequence[str]
-
-
-def first_event(run: RunData, event: Kinds) -> Event | None:
-    """The first event of one of these kinds."""
-    kinds = (event,) if isinstance(event, str) else tuple(event)
-    return next((e for e in run.events if e.kind in kinds), None)
-
-
-def first_contact(run: RunData) -> float | None:
-    """Time at which the structure is loaded first [s]: the start of the first window with a load."""
-    loaded = np.flatnonzero(run.component("f") > 0)
-    if not len(loaded):
-        return None
-    return float(run.begin_ns[loaded[0]]) / NS
+from coupling.interface import NS, PHASES, Array, IntArray
 
 
 def event_load(run: RunData, event: Kinds, component: str = "fx") -> float | None:
@@ -93,7 +79,7 @@ def load_period(run: RunData, component: str = "fx", after: Kinds | None = None,
     is laid over it; windows of different length are read at the distance of the shortest. None without an event
     ``after``, or if the record is shorter than 8 windows.
     """
-    begin, end = _between(run, after, before)
+    begin, end = between(run, after, before)
     if begin is None:
         return None
     chosen = (run.t_ns > begin) & (run.t_ns <= end)
@@ -115,13 +101,6 @@ def _evenly(t_ns: IntArray, load: Array) -> tuple[Array, Array]:
     return even / NS, np.interp(even, t_ns, load)
 
 
-def _between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[int | None, int]:
-    first = first_event(run, after) if after else None
-    last = first_event(run, before) if before else None
-    begin = (first.t_ns if first else None) if after else 0
-    return begin, last.t_ns if last else int(run.t_ns[-1]) if len(run.t_ns) else 0
-
-
 def rubble_volume(run: RunData) -> float | None:
     """Largest volume of broken ice in front of the structure [m^3], from the ledger's ``rubble_mass``."""
     mass = run.ledger.get("rubble_mass")
@@ -140,6 +119,23 @@ def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float |
     return out
 
 
+def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
+    """For Fx, Fz and the resultant: peak [N], its time [s], and load [N] and share of each phase then.
+
+    The phases of the resultant are projected on its direction, so that they add up to it as the others do.
+    """
+    out: dict[str, dict[str, Any]] = {}
+    for name in ("fx", "fz", "f") if len(run.t_ns) else ():
+        total = run.component(name)
+        k = int(np.argmax(total))
+        peak = float(total[k])
+        parts = run.load[k] @ (run.load[k].sum(axis=0) / peak if peak else np.zeros(3))
+        loads = {p: float(parts[i] if name == "f" else run.component(name, p)[k]) for i, p in enumerate(PHASES)}
+        out[name] = {"value": peak, "time": float(run.t[k]), "phases": loads,
+                     "shares": {p: v / peak if peak else 0.0 for p, v in loads.items()}}
+    return out
+
+
 def summary(run: RunData) -> dict[str, Any]:
     """What a recording holds, as `cosim info --json` prints it."""
     return {
@@ -147,7 +143,8 @@ def summary(run: RunData) -> dict[str, Any]:
         "version": run.metadata["version"], "seed": int(run.metadata["seed"]), "overrides": run.overrides,
         "simulated_s": float(run.t[-1]) if len(run.t) else 0.0, "duration_s": int(run.metadata["duration_ns"]) / NS,
         "windows": len(run.t), "peaks": peaks(run), "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
-        "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fz": e.force[2], "cells": e.cells}
+        "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fz": e.force[2], "cells": e.cells,
+                    "length": e.length, "area": e.area}
                    for e in run.events],
         "ledger": {name: float(values[-1]) for name, values in run.ledger.items()},
     }
@@ -157,5 +154,6 @@ def summary(run: RunData) -> dict[str, Any]:
 QUANTITIES: dict[str, Callable[..., float | None]] = {
     f.__name__: f
     for f in (event_load, event_time, peak_load, peak_time, build_up_time, level_between_peaks, load_period,
-              rubble_volume)
+              rubble_volume, cycles.largest_load, cycles.encounter_load, cycles.encounter_time, cycles.mean_load,
+              cycles.cycle_period, cycles.piece_length, cycles.piece_area, cycles.feed_rate, cycles.clearing_rate)
 }

@@ -33,7 +33,8 @@ def _build() -> dict[str, Any]:
     file.dependency.append(timestamp_pb2.DESCRIPTOR.name)
     _message(file, "Load", [(name, number) for name in LOAD_FIELDS])
     _message(file, "Event", [("kind", text), *((axis, number) for axis in AXES), ("cells", whole),
-                             ("x", number), ("y", number), ("z", number), ("text", text)])
+                             ("x", number), ("y", number), ("z", number), ("text", text), ("length", number),
+                             ("area", number)])
     _message(file, "Ledger", [("name", text), ("value", number)], repeated=("name", "value"))
     pool = descriptor_pool.Default()
     pool.Add(file)

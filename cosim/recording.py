@@ -56,6 +56,8 @@ class Recorder:
         self._add(frame.t_ns, channels.load(frame.t_ns, frame.load))
         if frame.ledger:
             self._add(frame.t_ns, channels.ledger(frame.t_ns, frame.ledger))
+        if frame.budget:
+            self._add(frame.t_ns, channels.ledger(frame.t_ns, frame.budget, "/load/budget"))
         for event in frame.events:
             for packed in channels.event(event):
                 self._add(event.t_ns, packed)

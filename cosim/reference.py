@@ -84,13 +84,14 @@ def _feature(entry: dict[str, Any], origin: str) -> Feature:
 
 
 def _check_arguments(where: str, quantity: str, arguments: dict[str, Any]) -> None:
-    known = tuple(inspect.signature(QUANTITIES[quantity]).parameters)[1:]
+    parameters = inspect.signature(QUANTITIES[quantity]).parameters
+    known = tuple(parameters)[1:]
     for key in arguments:
         if key not in known:
             raise FeatureError(f"{where}: unknown key {key!r}; use {_nearest(key, known + OWN_KEYS)}")
     if arguments.get("component", "fx") not in COMPONENTS:
         raise FeatureError(f"{where}: component = {arguments['component']!r}: use one of {', '.join(COMPONENTS)}")
-    if "event" in known and "event" not in arguments:
+    if "event" in known and parameters["event"].default is inspect.Parameter.empty and "event" not in arguments:
         raise FeatureError(f'{where}: event is missing; add for example event = "split"')
 
 

@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cosim import budget_report
 from cosim.compare import compare, reference_of
 from cosim.console import compare_cells
 from cosim.errors import FailedError
-from cosim.features import summary
+from cosim.features import shares_at_peak, summary
 from cosim.run_data import RunData
 from coupling.interface import NS, PHASES
 
@@ -48,21 +49,10 @@ def content(run: RunData) -> dict[str, Any]:
     """What the page shows, ready for its template."""
     figures = [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)]
     return {"summary": summary(run), "rows": _rows(run), "figures": figures, "shares": shares_at_peak(run),
+            "budget": budget_report.rows(run), "bound": budget_report.largest_residual(run),
             "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0] / 1e6, "fz": e.force[2] / 1e6,
                         "cells": e.cells, "text": e.text} for e in run.events],
             "metadata": dict(run.metadata), "scenario": run.texts.get("scenario.toml", "")}
-
-
-def shares_at_peak(run: RunData) -> list[dict[str, Any]]:
-    """Load of each phase at the peak of Fx and of Fz, and its share of the peak."""
-    table = []
-    for name in ("fx", "fz"):
-        total = run.component(name)
-        k = int(np.argmax(total))
-        phases = {p: float(run.component(name, p)[k]) for p in PHASES}
-        table.append({"component": name.capitalize(), "time": float(run.t[k]), "peak": float(total[k]) / 1e6,
-                      "phases": {p: (v / 1e6, v / float(total[k]) if total[k] else 0.0) for p, v in phases.items()}})
-    return table
 
 
 def _rows(run: RunData) -> list[tuple[str, ...]]:
@@ -74,8 +64,9 @@ def _rows(run: RunData) -> list[tuple[str, ...]]:
 
 
 def has_data(title: str, run: RunData) -> bool:
-    """Whether a figure has something to show: recordings without energy books have no energy figure."""
-    return "energy" not in title or "contact_work" in run.ledger
+    """Whether a figure has something to show: a recording may hold no energy books and no force budget."""
+    needs = {"energy": "contact_work" in run.ledger, "carries": bool(run.budget)}
+    return all(there for word, there in needs.items() if word in title)
 
 
 def picture(title: str, draw: Callable[[Figure, RunData], None], run: RunData) -> dict[str, str]:
@@ -127,6 +118,7 @@ def draw_energy(figure: Figure, run: RunData) -> None:
 
 FIGURES: dict[str, Callable[[Any, RunData], None]] = {
     "Load on the structure by phase": draw_loads,
+    "What carries the load": budget_report.draw,
     "Ice that has left the sheet": draw_mass,
     "Work and energy of the sheet": draw_energy,
 }

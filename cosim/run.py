@@ -71,7 +71,7 @@ class RunResult:
 
 def event_json(e: Event) -> dict[str, Any]:
     return {"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fy": e.force[1], "fz": e.force[2],
-            "cells": e.cells, "position": list(e.position), "text": e.text}
+            "cells": e.cells, "position": list(e.position), "text": e.text, "length": e.length, "area": e.area}
 
 
 def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunResult:

@@ -13,7 +13,7 @@ from cosim import messages
 from cosim.errors import InputError
 from coupling.interface import NS, PHASES, Array, Event, IntArray
 
-DATA_TOPICS = ("/load/structure", "/events", "/ledger")
+DATA_TOPICS = ("/load/structure", "/events", "/ledger", "/load/budget")
 Stored = tuple[str, int, bytes]  #: topic, time [ns], serialised message
 
 
@@ -32,6 +32,7 @@ class RunData:
     events: tuple[Event, ...] = ()
     ledger: dict[str, Array] = field(default_factory=dict)  #: (n,) by name; nan where a window has no such term
     texts: Mapping[str, str] = field(default_factory=dict)  #: attachments by name: scenario.toml, reference.toml
+    budget: dict[str, Array] = field(default_factory=dict)  #: (n,) by term, see `coupling.budget` [N]; empty if unknown
 
     @property
     def t(self) -> Array:
@@ -65,7 +66,7 @@ class RunData:
         t_ns: list[int] = []
         loads: list[list[float]] = []
         events: list[Event] = []
-        ledger: list[tuple[int, dict[str, float]]] = []
+        books: dict[str, list[tuple[int, dict[str, float]]]] = {"/ledger": [], "/load/budget": []}
         for topic, time, data in stored:
             if topic == "/load/structure":
                 message = messages.Load.FromString(data)
@@ -73,16 +74,16 @@ class RunData:
                 loads.append([getattr(message, key) for key in messages.LOAD_FIELDS[3:]])
             elif topic == "/events":
                 events.append(_event(time, messages.Event.FromString(data)))
-            elif topic == "/ledger":
+            elif topic in books:
                 message = messages.Ledger.FromString(data)
-                ledger.append((time, dict(zip(message.name, message.value, strict=True))))
+                books[topic].append((time, dict(zip(message.name, message.value, strict=True))))
         times = np.array(t_ns, np.int64)
         return cls(name, metadata, times, np.array(loads, float).reshape(-1, 3, 3), tuple(events),
-                   _columns(times, ledger), texts)
+                   _columns(times, books["/ledger"]), texts, _columns(times, books["/load/budget"]))
 
 
 def _event(t_ns: int, m: Any) -> Event:
-    return Event(t_ns, m.kind, (m.fx, m.fy, m.fz), m.cells, (m.x, m.y, m.z), m.text)
+    return Event(t_ns, m.kind, (m.fx, m.fy, m.fz), m.cells, (m.x, m.y, m.z), m.text, m.length, m.area)
 
 
 def _columns(times: IntArray, rows: list[tuple[int, dict[str, float]]]) -> dict[str, Array]:

@@ -67,6 +67,8 @@ class Event:
     cells: int  #: number of cells that failed in the event
     position: tuple[float, float, float]  #: centre of the failed cells or of the fragment [m]
     text: str  #: one line for people
+    length: float = 0.0  #: of the piece along the drift, 0 if the event is about none [m]
+    area: float = 0.0  #: of the piece [m2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,3 +176,4 @@ class Frame:
     load: Array  #: (3, 3) force on the structure, rows by `Phase`, columns x, y, z [N]
     events: tuple[Event, ...] = ()
     ledger: dict[str, float] = field(default_factory=dict)  #: named balances of `coupling.ledger` [SI]
+    budget: dict[str, float] = field(default_factory=dict)  #: what carries the load, see `coupling.budget` [N]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coupling.budget import Pairs
 from coupling.handover import BlockBirth, births
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
@@ -185,6 +186,13 @@ class RubblePort:
         return self.layer.load_by_phase(list(Phase))
 
     @property
+    def budget(self) -> Pairs:
+        """What carries the blocks, and minus their force on the sheet; see `coupling.budget`."""
+        terms = {name: (float(f[0]), float(f[1])) for name, f in self.layer.budget.items()}
+        x, z = terms.pop("on_sheet")
+        return {**terms, "staggering": (-x, -z)}
+
+    @property
     def mass(self) -> float:
         return self.layer.mass
 
@@ -198,6 +206,7 @@ class NoRubble:
 
     def __init__(self) -> None:
         self.mass, self.cleared_mass, self.power = 0.0, 0.0, 0.0
+        self.budget: Pairs = {}
 
     def add(self, fragment: Fragment) -> HandOver:
         mass = float(fragment.mass.sum())

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from coupling.budget import Pairs, force_budget
 from coupling.interface import NS, Array, BlockTable, Event, Fragment, Frame, Phase, SheetEdge, SheetForces, SheetView
 from coupling.ledger import Ledger
 from coupling.power import PowerBooks
@@ -31,6 +32,7 @@ class Report(Protocol):
     """What the sheet did in a window."""
 
     load: Array
+    budget: Pairs
     fragments: list[Fragment]
     events: list[Event]
 
@@ -61,6 +63,8 @@ class RubbleParticipant(Protocol):
     def mass(self) -> float: ...
     @property
     def cleared_mass(self) -> float: ...
+    @property
+    def budget(self) -> Pairs: ...
     @property
     def power(self) -> float: ...
     def save(self) -> Any: ...
@@ -98,7 +102,8 @@ class Scheduler:
         books |= self.power.close_window(self.rubble.power, self.sheet.power, self.window_ns / NS) | self.notes
         self.jump = bool(report.fragments)
         self._next = self._steering(self._next, self.power, self.jump)
-        return Frame(self.t_ns, self.sheet.view(), self.rubble.blocks(), load, tuple(report.events), books)
+        budget = force_budget(load.sum(axis=0), report.budget, self.rubble.budget)
+        return Frame(self.t_ns, self.sheet.view(), self.rubble.blocks(), load, tuple(report.events), books, budget)
 
     def _window(self) -> int:
         """The coming window, no longer than what is left of the run."""

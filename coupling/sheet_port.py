@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numba import njit
 
+from coupling.budget import Pairs
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
 from coupling.interface import (
@@ -39,6 +40,7 @@ class SheetReport:
     load: Array  #: (3,) mean force of the sheet on the structure [N]
     fragments: list[Fragment] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    budget: Pairs = field(default_factory=dict)  #: what carries the sheet, see `coupling.budget`
 
 
 class SheetPort:
@@ -90,7 +92,10 @@ class SheetPort:
         self._crush()
         events = self._events(out, parts, rubble_load) if out.failure else []
         self._quiet = not out.failed
-        return SheetReport(load, self._fragments, events)
+        r = out.reaction
+        budget = {"pressed_sheet": r.foundation, "drag": r.drag, "inertia": r.inertia, "held": r.held,
+                  "staggering": r.applied}
+        return SheetReport(load, self._fragments, events, budget)
 
     def save(self) -> Memory:
         """The sheet, its edge and its contact between two windows, for `restore`."""
@@ -310,18 +315,19 @@ class SheetPort:
         text = f"a piece of {area:.0f} m2, {f.mass.sum() / 1e3:.0f} t"
         events = []
         if at_structure:
-            events.append(self._event(t_ns, "circumferential", load, cells, where,
-                                      f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"))
-        return [*events, self._event(t_ns, "hand_over", load, cells, where, f"{text}, becomes rubble")]
+            what = f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"
+            events.append(self._event(t_ns, "circumferential", load, cells, where, what, length, area))
+        return [*events, self._event(t_ns, "hand_over", load, cells, where, f"{text}, becomes rubble", length, area)]
 
     def _cells_centre(self, cells: list[int]) -> Array:
         corners = self.sheet.grid.cell_nodes[cells].ravel()
         return self._position(corners).mean(axis=0)
 
-    def _event(self, t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str) -> Event:
+    def _event(self, t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str, length: float = 0.0,
+               area: float = 0.0) -> Event:
         force = (float(load[0]), float(load[1]), float(load[2]))
         place = (float(where[0]), float(where[1]), float(where[2]))
-        return Event(t_ns, kind, force, cells, place, text)
+        return Event(t_ns, kind, force, cells, place, text, length, area)
 
 
 @njit(cache=True)

@@ -22,6 +22,7 @@ from lattice.explicit import ExplicitEngine
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.march import Marched, NodeForces
+from lattice.reaction import Mean, Support, between
 from lattice.sheet import Outcome, Sheet, edge_displacement
 from lattice.stiffness import Springs
 
@@ -44,6 +45,7 @@ class ExplicitSheet(Sheet):
                                                      alpha=alpha, step=step)
         self.energy.engine = self.engine
         self._contact_time = contact_time
+        self.support = Support(self.engine, held)
         self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
         self._lively, self._loss_rate = True, 0.0
         self._eased = np.zeros(grid.cells)  #: limit of cells that a crack tip has just reached, else 0 [Pa]
@@ -65,7 +67,9 @@ class ExplicitSheet(Sheet):
         The mean contact force has a row for each node of the contact, then one for each node that left with force.
         """
         out, impulse = Outcome(np.empty((0, 3)), np.empty((0, 3))), np.zeros((self.grid.nodes, 3))
+        start, present = self.state, self.present.copy()
         self._begin(t, force_u, force_q, contact)
+        self._u_sum, self._q_sum, self._applied = np.zeros_like(start.u), np.zeros_like(start.q), np.zeros(3)
         done = 0
         while done < self.engine.sub_steps:
             load = self._loads(force_u, force_q)
@@ -77,6 +81,10 @@ class ExplicitSheet(Sheet):
                 self._ease()
         self._end(t + self.dt, self._loads(force_u, force_q), contact, out)
         self._means(out, impulse / self.dt, contact.nodes)
+        mean = State(self._u_sum / self.dt, self._q_sum / self.dt, start.u_dot, start.q_dot)
+        applied = tuple((self._applied / self.dt).tolist())
+        out.reaction = between(self.support, start, self.state, self.dt, Mean(mean, mean, 1.0, 0.0), self.live_cells,
+                               present, applied)
         return out
 
     def _loads(self, force_u: Array, force_q: Array) -> NodeForces:
@@ -97,7 +105,9 @@ class ExplicitSheet(Sheet):
         e = self.engine
         steps = min(self.block, e.sub_steps - done)
         patch = e.contact(t + (done + 0.5 * steps) * e.dt, contact)
+        before = e.displacement()
         out = e.march(steps, load, patch, self._lively)
+        self._note(out.steps * e.dt, before, load)
         impulse[contact.nodes] += out.steps * e.dt * out.contact
         self.energy.contact += out.contact_work
         self.energy.rubble += out.work
@@ -106,6 +116,13 @@ class ExplicitSheet(Sheet):
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > LIVELY * self.energy.stored
         return out
+
+    def _note(self, time: float, before: tuple[Array, Array], load: NodeForces) -> None:
+        """Adds some sub-steps to the integrals of displacement and applied force (trapezoidal rule)."""
+        for total, old, new in zip((self._u_sum, self._q_sum), before, self.engine.displacement(), strict=True):
+            total += 0.5 * time * (old + new)
+        nodes = load.row * self.grid.ny + load.column
+        self._applied += time * np.array(self.support.applied(nodes, load.force[:, 0], load.force[:, 2]))
 
     # ---- failure -----------------------------------------------------------------------------------------------
 

@@ -23,6 +23,7 @@ from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.memory import Memory, recall, remember
+from lattice.reaction import Reaction, Support, between, of_cubic, of_step
 from lattice.stiffness import Springs
 
 LONG_STEP_ERROR = 2e-4  #: largest estimated error of a displacement in a long step, as share of the thickness
@@ -41,6 +42,7 @@ class Outcome:
     pieces: list[IntArray] = field(default_factory=list)  #: nodes of the pieces that left, in order
     parts: int = 1  #: parts of the sheet that stay in the lattice
     failure: tuple[float, Array] | None = None  #: time of the first failure [s] and contact force then (m, 3) [N]
+    reaction: Reaction = field(default_factory=Reaction)  #: what carries the sheet beside its contact
 
 
 @dataclass
@@ -74,6 +76,7 @@ class Sheet:
         self.engine = Engine(grid, ice, springs, held_in_plane=held, damping=damping, alpha=alpha)
         self.engine.use(dt)
         self.energy = EnergyBooks(self.engine)
+        self.support = Support(self.engine, held)
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
         self._longest, self._windows, self._wait = long_step, min(2, long_step), 0
@@ -145,6 +148,8 @@ class Sheet:
         out = Outcome(0.5 * (plan.contact + force), force, parts=self.parts)
         way = edge_displacement(state, contact.nodes) - edge_displacement(self.state, contact.nodes)
         plan.work += float((out.contact_mean * way).sum())
+        mean = of_cubic(self.state, state, self.dt)
+        out.reaction = between(self.support, self.state, state, self.dt, mean, self.live_cells, self.present)
         self.state, self.utilisation = state, utilisation
         plan.contact, plan.served = force, plan.served + 1
         if plan.served == plan.windows:
@@ -195,6 +200,9 @@ class Sheet:
             self._release_loose(out, release)
             force_u[~self.present], force_q[~self.present] = 0.0, 0.0
         self.energy.book_step(step, force_u, force_q, contact.nodes, self.live_cells, self.present)
+        applied = self.support.applied(slice(None), force_u[:, 0], force_q[:, 0])
+        out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), self.live_cells,
+                               self.present, applied)
         self.state, self.utilisation = step.state, utilisation
         if out.failed:
             self._wait, self._windows = QUIET, min(2, self._longest)

@@ -247,6 +247,11 @@ class RubbleLayer:
         return -done / self._window if self._window else 0.0
 
     @property
+    def budget(self) -> dict[str, Array]:
+        """What carries the blocks, mean forces (x, z) over the last window [N]; see `table.budget`."""
+        return table.budget(self.sections.values(), self._window)
+
+    @property
     def mass(self) -> float:
         """True mass of all blocks that are followed [kg]."""
         return float(sum(b.mass for b in self.blocks))
@@ -260,5 +265,5 @@ class RubbleLayer:
     def energy(self) -> dict[str, float]:
         """See `table.energy`; with ``drag``, what drag in the plane has taken so far, and ``dry``, the work of dry
         tops, by which the potential energy falls short."""
-        losses = sum((s.losses for s in self.sections.values()), np.zeros(4))
+        losses = sum((s.losses[:4] for s in self.sections.values()), np.zeros(4))
         return {**table.energy(self.blocks, self.physics), "drag": float(losses[0]), "dry": float(losses[3])}

@@ -20,7 +20,7 @@ from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
 from rubble.space import Solid, new_space
 from rubble.stepping import STEP, read_bodies, run
 from rubble.trim import cut_away
-from rubble.water import EDGE_COLUMNS, STATE_COLUMNS
+from rubble.water import EDGE_COLUMNS, SHARES, STATE_COLUMNS
 
 _BODY = body_offsets()
 HEAVY = 64  #: overloaded pairs kept in a window
@@ -38,8 +38,11 @@ class Section:
         self.slopes = np.ascontiguousarray(self.faces[rise < -0.1 * np.hypot(run, rise)])  #: those that meet the drift
         self.blocks: list[Block] = []
         self.sheet: SheetBody | None = None
-        #: energy lost to drag [J]; impulse of dead load and water in x and z [N s]; work of dry tops [J]
-        self.losses = np.zeros(4)
+        #: energy lost to drag [J]; impulse of dead load and water in x and z [N s]; work of dry tops [J]; and, for the
+        #: last window alone, the impulses of the water's SHARES [N s]
+        self.losses = np.zeros(4 + SHARES)
+        self.momentum_gain = np.zeros(2)  #: of the blocks with added mass over the last window, x and z [N s]
+        self.dead_load = np.zeros(2)  #: weight and constant thrust of the blocks in the last window, x and z [N]
         self.sheet_sums = np.zeros(8)  #: see `contacts.accumulate`
         self.heavy = np.zeros((HEAVY + 1, HEAVY_COLUMNS))
         self.water = np.array([physics.rho_w * physics.g, physics.rho_w / 2, physics.form_drag, physics.skin_drag,
@@ -165,8 +168,9 @@ class Section:
 
     def advance(self, n_substeps: int) -> None:
         """Move on by whole sub-steps; sums of impulses start from zero."""
-        self.sums[:] = self.sheet_sums[:] = 0.0
+        self.sums[:] = self.sheet_sums[:] = self.losses[-SHARES:] = 0.0
         self.heavy[0, 0] = 0.0
+        self.dead_load, before = self._dead[:, :2].sum(axis=0), self.moved @ self.state[:, 3:5]
         if self.sheet is not None:
             self.sheet.nodes[:, 2:] = 0.0
         if not self.blocks and self.sheet is None:
@@ -175,6 +179,7 @@ class Section:
         while done < n_substeps:
             done += self._run(n_substeps - done)
         self.state = self._state[:len(self.blocks)].copy()
+        self.momentum_gain = self.moved @ self.state[:, 3:5] - before
         if self.physics.filling_rate > 0.0:
             for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
                 block.flooded = share

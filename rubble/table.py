@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from rubble.block import Block
 from rubble.geometry import Array, IntArray, moments, place, place_all, submerged
 from rubble.physics import RubblePhysics
 from rubble.section import Section
+from rubble.water import SHARES
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +60,23 @@ def momentum(blocks: list[Block]) -> Array:
     """True mass times velocity of blocks (3,) [N s], summed in the order of their numbers."""
     rows = [b.mass * np.array([b.body.velocity.x, b.v_y, b.body.velocity.y]) for b in blocks]
     return np.sum(rows, axis=0) if rows else np.zeros(3)
+
+
+def budget(sections: Iterable[Section], window: float) -> dict[str, Array]:
+    """Mean forces on all blocks, x and z, over the last window of length ``window`` [s], each (2,) [N].
+
+    ``flooded_rubble`` weight and the pressure of water as if all tops were flooded, ``dry_tops`` what tops that are not
+    add to it, ``drag``, ``inertia`` minus the gain of momentum with added mass, ``on_sheet`` the force that the blocks
+    exert on the sheet. What these do not carry presses on the structure.
+    """
+    forces = np.zeros((5, 2))
+    for s in sections:
+        forces[:3] += s.losses[-SHARES:].reshape(3, 2)
+        forces[0] += window * s.dead_load
+        forces[3] -= s.momentum_gain
+        forces[4] += s.sheet_sums[5:7]
+    names = ("flooded_rubble", "dry_tops", "drag", "inertia", "on_sheet")
+    return dict(zip(names, forces / window if window else forces, strict=True))
 
 
 def energy(blocks: list[Block], physics: RubblePhysics) -> dict[str, float]:

@@ -62,6 +62,7 @@ class MassBehindSpring:
 
     def __init__(self):
         self.state, self.mass, self.cleared_mass, self.power, self.calls = START[2:].copy(), 0.0, 0.0, 0.0, 0
+        self.budget = {}
         self._force, self._edge = K * (START[2] - START[0]), START[:2]
 
     def save(self):

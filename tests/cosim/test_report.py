@@ -1,10 +1,14 @@
 """The HTML page of a run: complete, self-contained, and right about the shares at the peak."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
-from cosim.report import content, shares_at_peak, write_report
+from cosim.features import shares_at_peak
+from cosim.report import content, write_report
 from cosim.run_data import RunData
+from coupling.budget import TERMS
 from coupling.interface import Event
 
 METADATA = {"scenario": "case", "title": "A <case>", "version": "1", "seed": "0", "duration_ns": "200000000",
@@ -24,12 +28,38 @@ def run():
 
 
 def test_shares_at_the_peak_add_up(run):
-    fx, fz = shares_at_peak(run)
+    found = shares_at_peak(run)
+    fx, fz = found["fx"], found["fz"]
     assert fx["time"] == pytest.approx(0.15)
-    assert fx["peak"] == pytest.approx(8.0)
-    assert fx["phases"]["breaking"] == pytest.approx((6.0, 0.75))
-    assert sum(share for _, share in fx["phases"].values()) == pytest.approx(1.0)
-    assert fz["phases"]["sliding"][1] == pytest.approx(1.0)
+    assert fx["value"] == pytest.approx(8e6)
+    assert (fx["phases"]["breaking"], fx["shares"]["breaking"]) == pytest.approx((6e6, 0.75))
+    assert fz["shares"]["sliding"] == pytest.approx(1.0)
+    for row in found.values():
+        assert sum(row["shares"].values()) == pytest.approx(1.0, rel=1e-12)
+        assert sum(row["phases"].values()) == pytest.approx(row["value"], rel=1e-12)
+
+
+def test_shares_of_the_resultant_lie_along_it(run):
+    f = shares_at_peak(run)["f"]
+    assert f["value"] == pytest.approx(np.hypot(8e6, 1e6), rel=1e-12)
+    assert f["phases"]["breaking"] == pytest.approx(6e6 * 8.0 / np.hypot(8.0, 1.0), rel=1e-12)
+
+
+def test_the_budget_stands_at_the_peaks_before_a_failure_and_in_a_figure(run):
+    terms = {f"{axis}_{name}": np.zeros(4) for axis in ("fx", "fz") for name in (*TERMS, "residual")}
+    terms["fz_flooded_rubble"] += 1e6
+    terms["fx_held"] += run.component("fx") - 8.0
+    terms["fx_residual"] += 8.0
+    broken = Event(120_000_000, "circumferential", (5e6, 0.0, 4e6), 3, (0.0, 0.0, 0.0), "", 12.0, 100.0)
+    shown = content(dataclasses.replace(run, budget=terms, events=(broken, broken)))
+    assert len(shown["figures"]) == 4
+    assert shown["bound"]["fx"] == pytest.approx(1e-6)
+    table = {(r["when"], r["component"]): r for r in shown["budget"]}
+    assert len(table) == len(shown["budget"]) == 8  # two peaks, one failure, the mean; each with Fx and Fz
+    assert table["peak of Fx", "Fx"]["terms"]["held"] == pytest.approx(8.0, abs=1e-4)
+    assert table["before failure", "Fx"]["time"] == "0.10"
+    assert table["before failure", "Fx"]["total"] == pytest.approx(3.0)
+    assert table["mean", "Fz"]["terms"]["flooded rubble"] == pytest.approx(1.0)
 
 
 def test_the_page_is_self_contained(run, tmp_path):

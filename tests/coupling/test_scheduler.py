@@ -47,7 +47,7 @@ class StubRubble:
 
     def __init__(self, trace, loss=0.0, share=0.0):
         self.trace, self.mass, self.cleared_mass, self.power, self.loss = trace, 0.0, 0.0, 0.0, loss
-        self.windows, self.force, self.share, self.carried = 0, 0.0, share, 0.0
+        self.windows, self.force, self.share, self.carried, self.budget = 0, 0.0, share, 0.0, {}
 
     def save(self):
         return self.mass, self.windows, self.force

@@ -99,6 +99,7 @@ class Wall:
 
     def __init__(self, k):
         self.k, self.mass, self.cleared_mass, self.power, self.pressed = k, 0.0, 0.0, 0.0, 0.0
+        self.budget = {}
 
     def save(self):
         return self.pressed

@@ -28,7 +28,7 @@ def add_box(layer, x=0.0, z=0.0, length=10.0, height=3.0, width=2.8, density=846
 def force_on(edges, state, form=0.0, skin=0.0):
     out = np.zeros(5)
     water = np.array([RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0])
-    block_force(edges, 0, len(edges), water, 1.0, np.array([state], dtype=float), 0, out)
+    block_force(edges, 0, len(edges), water, 1.0, np.array([state], dtype=float), 0, out, np.empty(6))
     return out[:4]
 
 
