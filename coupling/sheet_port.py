@@ -55,7 +55,7 @@ class SheetPort:
         y = np.asarray(g.y0 + np.arange(g.ny) * g.d, np.float64)
         self.ice_y = y.copy()  #: middle of each column's ice [m]
         self.ice_y[[0, -1]] += 0.25 * g.d * np.array([1.0, -1.0])
-        normal = structure.normal(self.ice_y, np.full(g.ny, ice.freeboard))
+        normal = structure.normal(self.ice_y, np.full(g.ny, self.contact.touching_z))
         self.meets = np.isfinite(normal[:, 0]) & (normal[:, 0] < 0.0)  #: columns in whose way the structure stands
         with np.errstate(invalid="ignore", divide="ignore"):
             tan = np.where(self.meets, np.abs(normal[:, 0] / normal[:, 2]), 1.0)
