@@ -52,7 +52,7 @@ class Load:
     terms: dict[str, float]  #: parts by their symbol [N]
     fx: float  #: in drift direction [N]
     fz: float  #: upwards [N]
-    breaking: float  #: what breaking the sheet alone takes of fx [N]
+    breaking: float  #: what breaking the sheet takes of fx, its share of the compression included [N]
     between: dict[str, float] = field(default_factory=dict)  #: intermediate values by symbol [SI]
 
 

@@ -31,7 +31,7 @@ def croasdale(k: Case) -> Load:
                      "this slope does not break it in bending; use less friction or a gentler slope")
     F_H = (H_B + H_P + H_R + H_L + H_T) / left
     terms = {"H_B": H_B, "H_P": H_P, "H_R": H_R, "H_L": H_L, "H_T": H_T}
-    return Load(terms, F_H, k.sign * F_H / xi, H_B, {"xi": xi, "L_c": L_c, "l_c": l_c, "compression": 1.0 / left})
+    return Load(terms, F_H, k.sign * F_H / xi, H_B / left, {"xi": xi, "L_c": L_c, "l_c": l_c, "compression": 1.0 / left})
 
 
 def _rubble(k: Case, rho: float, xi: float) -> tuple[float, float, float]:
