@@ -68,10 +68,15 @@ class ScenarioModel(Section):
         return self
 
     @model_validator(mode="after")
-    def _toe_is_below_the_ice(self) -> Self:
+    def _upward_breaking_can_run(self) -> Self:
         draft, toe = self.ice.thickness * self.ice.density / self.water.density, self.structure.toe_depth
-        if self.structure.breaking == "upward" and toe is not None and toe <= draft:
+        if self.structure.breaking == "downward":
+            return self
+        if toe is not None and toe <= draft:
             raise fault("structure.toe_depth", f"the ice would pass under the slope; use more than its draft {draft:g} m")
+        if self.rubble.initial_volume > 0.0:
+            raise fault("rubble.initial_volume", "initial rubble settles under the sheet, in front of a downward-breaking "
+                                                 'structure; start an upward-breaking one without: "0 m^3"')
         return self
 
     @model_validator(mode="after")

@@ -64,7 +64,8 @@ class SheetPort:
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
         #: mean power of the rubble's forces on the sheet over the last window, in the fixed frame [W]
         self.power = 0.0
-        self._t, self._quiet = 0.0, True
+        self.draft = ice.h - ice.freeboard  #: lift at which the floating sheet leaves the water [m]
+        self._t, self._quiet, self._afloat = 0.0, True, True
         self._start = 0.0, sheet.state  #: time and state at the start of the last window
         self.setback = 0.0  #: distance by which the floe starts farther back than its grid [m]
         self._yielding_key: tuple[object, ...] = ()
@@ -91,6 +92,7 @@ class SheetPort:
         self.power = self._power(rubble)
         self._crush()
         events = self._events(out, parts, rubble_load) if out.failure else []
+        events += self._lifted_out(rubble_load + load)
         self._quiet = not out.failed
         r = out.reaction
         budget = {"pressed_sheet": r.foundation, "drag": r.drag, "inertia": r.inertia, "held": r.held,
@@ -307,6 +309,18 @@ class SheetPort:
         for fragment, at_structure in zip(self._fragments, self._at_structure, strict=True):
             events += self._piece_events(t_ns, load, len(out.failed), fragment, at_structure)
         return events
+
+    def _lifted_out(self, load: Array) -> list[Event]:
+        """One event of a run: where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the buoyancy
+        that is missing; that is right until the underside leaves the water at w = draft, beyond it it pulls too much."""
+        w = np.where(self.sheet.present, self.sheet.state.q[:, 0], 0.0)
+        highest = int(np.argmax(w))
+        if not self._afloat or w[highest] <= self.draft:
+            return []
+        self._afloat = False
+        text = (f"the sheet is lifted by {w[highest]:.2f} m, more than its draft of {self.draft:.2f} m: from here on the "
+                "linear foundation pulls it down with more than its weight")
+        return [self._event(round(self._t * NS), "out_of_water", load, 0, self._position(np.array([highest]))[0], text)]
 
     def _piece_events(self, t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
         where = np.average(f.position, axis=0, weights=f.length * f.width)

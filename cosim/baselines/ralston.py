@@ -4,7 +4,8 @@
   (OpenFAST, modules/icefloe, test GLA, ice flexural failure, IEC). Its vertical force is from memory, but equals the
   independent one of the second form to six digits for the same breaking load.
 * Johansen, Y = 3.422, with the coefficients A and B of Ralston (1977), as in the manual of IceDyn (OpenFAST),
-  p. 26-28. Larger than the first: 4.32 against 3.74 MN in the test GLA.
+  p. 26-28. Larger than the first: 4.32 against 3.74 MN in the test GLA. Its equation for lambda is the minimum of
+  the Tresca form (1.369 = 1 + 1 / 2.711, 0.0922 = 1 / (4 . 2.711)), so its load is not the least for Y = 3.422. Kept.
 
 A downward-breaking cone has (rho_w g) / 9 in place of rho_i g (Ralston 1977, from memory, unverified).
 """
@@ -87,7 +88,7 @@ def ralston_johansen(k: Case) -> Load:
 
 
 def _root(equation: Callable[[float], float]) -> float:
-    """lambda > 1 of the least upper bound; the equation rises from -0.369 at 1 without bound."""
+    """lambda > 1; the equation rises from -0.369 at 1 without bound."""
     high = 2.0
     while equation(high) < 0.0:
         high *= 2.0
