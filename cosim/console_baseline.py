@@ -41,7 +41,7 @@ def beside_rows(design: dict[str, Any]) -> list[tuple[str, ...]]:
     """Rows of the table of a run: formula, Fx, simulated / design, Fz, simulated / design, share of breaking."""
     peak = design["simulated"]
     share = peak["breaking_share"]
-    rows = [("simulated peak", number(peak["fx"], 1e-6), "", number(peak["fz"], 1e-6), "",
+    rows: list[tuple[str, ...]] = [("simulated peak", number(peak["fx"], 1e-6), "", number(peak["fz"], 1e-6), "",
              "-" if share is None else f"{100.0 * share:.0f} %")]
     for found in design.get("methods", {}).values():
         title, fx, fz, breaking = cells(found)

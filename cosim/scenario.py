@@ -73,9 +73,9 @@ class ScenarioModel(Section):
         if self.structure.breaking == "downward":
             return self
         if toe is not None and toe <= draft:
-            raise fault("structure.toe_depth", f"the ice would pass under the slope; use more than its draft {draft:g} m")
+            raise fault("structure.toe_depth", f"the ice passes under the slope; use more than its draft {draft:g} m")
         if self.rubble.initial_volume > 0.0:
-            raise fault("rubble.initial_volume", "initial rubble settles under the sheet, in front of a downward-breaking "
+            raise fault("rubble.initial_volume", "initial rubble settles under the sheet, before a downward-breaking "
                                                  'structure; start an upward-breaking one without: "0 m^3"')
         return self
 

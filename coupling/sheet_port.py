@@ -311,16 +311,17 @@ class SheetPort:
         return events
 
     def _lifted_out(self, load: Array) -> list[Event]:
-        """One event of a run: where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the buoyancy
-        that is missing; that is right until the underside leaves the water at w = draft, beyond it it pulls too much."""
+        """One event of a run: where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the missing
+        buoyancy. That is right until the underside leaves the water at w = draft; beyond, it pulls too much."""
         w = np.where(self.sheet.present, self.sheet.state.q[:, 0], 0.0)
         highest = int(np.argmax(w))
         if not self._afloat or w[highest] <= self.draft:
             return []
         self._afloat = False
-        text = (f"the sheet is lifted by {w[highest]:.2f} m, more than its draft of {self.draft:.2f} m: from here on the "
-                "linear foundation pulls it down with more than its weight")
-        return [self._event(round(self._t * NS), "out_of_water", load, 0, self._position(np.array([highest]))[0], text)]
+        text = (f"the sheet is lifted by {w[highest]:.2f} m, more than its draft of {self.draft:.2f} m: "
+                "from here on the linear foundation pulls it down with more than its weight")
+        where = self._position(np.array([highest]))[0]
+        return [self._event(round(self._t * NS), "out_of_water", load, 0, where, text)]
 
     def _piece_events(self, t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
         where = np.average(f.position, axis=0, weights=f.length * f.width)

@@ -18,7 +18,7 @@ def croasdale(k: Case) -> Load:
     """All terms in N. `BaselineError` where the ice sticks to the slope or the rubble is steeper than the slope."""
     _check(k)
     rho = k.rho_i if k.breaking == "upward" else k.rho_w - k.rho_i
-    s, c, t = sin(k.a), cos(k.a), tan(k.a)
+    s, c = sin(k.a), cos(k.a)
     xi = (s + k.mu * c) / (c - k.mu * s)
     L_c = (k.E * k.h**3 / (12.0 * k.rho_w * k.g * (1.0 - k.nu**2))) ** 0.25
     l_c = k.w if k.wide else k.w + pi**2 * L_c / 4.0
@@ -31,15 +31,16 @@ def croasdale(k: Case) -> Load:
                      "this slope does not break it in bending; use less friction or a gentler slope")
     F_H = (H_B + H_P + H_R + H_L + H_T) / left
     terms = {"H_B": H_B, "H_P": H_P, "H_R": H_R, "H_L": H_L, "H_T": H_T}
-    return Load(terms, F_H, k.sign * F_H / xi, H_B / left, {"xi": xi, "L_c": L_c, "l_c": l_c, "compression": 1.0 / left})
+    between = {"xi": xi, "L_c": L_c, "l_c": l_c, "compression": 1.0 / left}
+    return Load(terms, F_H, k.sign * F_H / xi, H_B / left, between)
 
 
 def _rubble(k: Case, rho: float, xi: float) -> tuple[float, float, float]:
     """H_P (push through rubble), H_R (push the sheet up through it), H_L (lift it) [N]; none without rubble."""
-    s, c, t = sin(k.a), cos(k.a), tan(k.a)
-    ride = k.h_r * k.h * rho * k.g * (s + k.mu * c) / s
     if k.h_r == 0.0:
         return 0.0, 0.0, 0.0
+    s, c, t = sin(k.a), cos(k.a), tan(k.a)
+    ride = k.h_r * k.h * rho * k.g * (s + k.mu * c) / s
     R, heap = 1.0 - tan(k.th) / t, rho * k.g * (1.0 - k.e) * k.h_r**2
     cot = 1.0 / tan(k.th) - 1.0 / t
     H_P = k.w * k.mu_i * heap * R**2 / (2.0 * tan(k.th))

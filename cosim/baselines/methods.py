@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosim.baselines.case import BaselineError, Case, Method
+from cosim.baselines.case import BaselineError, Method
 from cosim.baselines.croasdale import croasdale
 from cosim.baselines.inputs import Given, given
 from cosim.baselines.nevel import nevel
@@ -18,9 +18,11 @@ METHODS = {m.name: m for m in (
     Method("croasdale", "Croasdale", croasdale, "ISO 19906, Croasdale; terms as in IceFloe, type 6",
            "the vertical force and the buoyant weights of a downward-breaking slope are the standard form, unverified",
            False, (*_RUBBLE, "poisson_ratio")),
-    Method("ralston_tresca", "Ralston, Tresca", ralston_tresca, "ISO 19906 and IEC 61400-3, Ralston; as IceFloe, type 7",
+    Method("ralston_tresca", "Ralston, Tresca", ralston_tresca,
+           "ISO 19906 and IEC 61400-3, Ralston; as IceFloe, type 7",
            "on a downward-breaking cone with the 1/9 rule, unverified", True, _RIDE),
-    Method("ralston_johansen", "Ralston, Johansen", ralston_johansen, "Ralston (1977), A/B form; as the manual of IceDyn",
+    Method("ralston_johansen", "Ralston, Johansen", ralston_johansen,
+           "Ralston (1977), A/B form; as the manual of IceDyn",
            "larger than the Tresca form by its yield criterion; downward-breaking with the 1/9 rule, unverified", True,
            _RIDE),
     Method("nevel", "Nevel", nevel, "Nevel (1961, 1972), wedges on water, from memory",
@@ -45,10 +47,3 @@ def _one(method: Method, found: Given) -> dict[str, Any]:
         return {**about, "refused": str(error)}
     return {"terms": load.terms, "fx": load.fx, "fz": load.fz, "breaking_share": load.breaking / load.fx,
             "intermediate": load.between, **about}
-
-
-def check(case: Case) -> None:
-    """Raises what `design_loads` only reports: the first formula that refuses the case."""
-    for method in METHODS.values():
-        if not (method.cone_only and case.wide):
-            method.formula(case)

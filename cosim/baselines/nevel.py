@@ -13,7 +13,7 @@ from cosim.baselines.case import Case, Load, refuse
 
 
 def nevel(k: Case) -> Load:
-    """n wedges of tip angle th = pi / n: P = sigma_f h^2 / 6 . 2 tan(th / 2) . [1.05 + 2 r/l + 0.5 (r/l)^3] each [N]."""
+    """n wedges of tip angle th = pi / n, P = sigma_f h^2 / 6 . 2 tan(th / 2) . [1.05 + 2 r/l + 0.5 (r/l)^3] [N]."""
     if k.wedges < 2:
         raise refuse("Nevel", f"{k.wedges} wedge in half a circle", "give baseline.wedges of 2 or more")
     slip = cos(k.a) - k.mu * sin(k.a)

@@ -58,7 +58,7 @@ def _weight(k: Case) -> float:
 
 def ralston_tresca(k: Case) -> Load:
     """H_B breaking and H_R ride-up, V_B and V_R their vertical parts [N]; x is the standard's approximation."""
-    q, rho_g, s, c = cone_of(k, "Ralston (ISO/IEC form)"), _weight(k), sin(k.a), cos(k.a)
+    q, rho_g, c = cone_of(k, "Ralston (ISO/IEC form)"), _weight(k), cos(k.a)
     G = rho_g * k.w**2 / (4.0 * k.sigma_f * k.h)
     x = 1.0 + 1.0 / sqrt(3.0 * G + 0.5 * Y_TRESCA)
     bend = (1.0 + Y_TRESCA * x * log(x)) / (x - 1.0) + G * (x - 1.0) * (x + 2.0)
