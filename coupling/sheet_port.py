@@ -270,6 +270,7 @@ class SheetPort:
         rows = rows[: int(np.argmin(present))] if not present.all() else rows
         nodes = rows * g.ny + column
         position, velocity = motion(nodes)
+        self._check_apart(position)
         lead = float(self.edge.lead(rows[:1])[0])
         return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity, self.sheet.ice.h,
                          nodes, stiffness, inertia)
@@ -284,6 +285,15 @@ class SheetPort:
         t, state = self._start
         begin = self._place(nodes, state, t)
         return begin, ((self._position(nodes) - begin) / (self._t - t))[:, ::2]
+
+    def _check_apart(self, position: Array) -> None:
+        """Refuses rows (m, 3), front first, of which one has passed the next."""
+        passed = np.flatnonzero(np.diff(position[:, 0]) >= 0.0)
+        if len(passed):
+            x, y = position[passed[0], :2]
+            raise SimulationError(f"t = {self._t:.3f} s: parts of the floe overlap by a cell at x = {x:.2f}, "
+                                  f"y = {y:.2f} m, because cracks carry no pressure between parts that stay in the "
+                                  "lattice; use a larger floe, so that a free part of it becomes rubble")
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""

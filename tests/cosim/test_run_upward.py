@@ -80,7 +80,7 @@ def test_a_strip_breaks_at_croasdales_load():
     from cosim.baselines.methods import design_loads
 
     scenario = load_scenario(PLANE, [*STRIP, "rubble.enabled=false", "scenario.duration='20 s'",
-                                     "drift.velocity='20 mm/s'"])
+                                     "drift.velocity='20 mm/s'", "fracture.longest_step='0.2 s'"])
     event = run_scenario(scenario).events[0]
     H_B = design_loads(scenario.model)["croasdale"]["terms"]["H_B"]
     assert event.force[0] == pytest.approx(H_B, rel=0.1)
