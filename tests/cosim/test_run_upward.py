@@ -14,7 +14,7 @@ from rubble.outline import convex_parts
 
 PLANE, CONE = "upward_plane", "icefloe_gla_upward_cone"
 STRIP = ["sheet.length='60 m'", "sheet.width='3 m'", "sheet.nodes=[61, 4]", "scenario.duration='12 s'"]
-COARSE = ["sheet.nodes=[31, 31]", "scenario.duration='5 s'"]
+COARSE = ["sheet.length='60 m'", "sheet.nodes=[31, 31]", "scenario.duration='5 s'"]
 
 
 def steps(name, overrides):
