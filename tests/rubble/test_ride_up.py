@@ -111,7 +111,7 @@ def test_the_sheets_body_follows_the_row_that_comes_to_the_front():
 
     def edge(front):
         x = np.arange(front - 0.5, front - 20.0, -1.0)
-        layer.set_sheet(0, x, np.full(len(x), z), front, np.tile(speed, (len(x), 1)), H, (5e8, 2e7))
+        layer.set_sheet(0, x, np.full(len(x), z), front, np.tile(speed, (len(x), 1)), H, (5e8, 2e7), (5e4, 5e4))
 
     edge(0.0)
     layer.advance(10)
