@@ -148,6 +148,6 @@ def test_sections_of_an_upward_cone_are_solid_up_to_its_shaft(y):
 def test_shipped_upward_cases_run_to_their_end(name):
     result = run_scenario(load_scenario(name))
     assert sum(e.kind == "circumferential" for e in result.events) >= 4
-    assert result.ledger["mass_error"] < 1e-12 and result.ledger["cleared_mass"] > 0.0
+    assert result.ledger["mass_error"] < 1e-12 and result.by_phase["sliding"].value[0] > 1e5
     assert result.peaks.value[2] < 0.0 < result.peaks.value[0]
-    assert result.peaks.value[0] < 5e6
+    assert result.peaks.value[0] < 2e6
