@@ -126,7 +126,7 @@ def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float |
 
 
 def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
-    """For Fx, Fz and the resultant: peak (largest in magnitude) [N], its time [s], and load [N] and share of each phase then.
+    """For Fx, Fz and the resultant: peak (by magnitude) [N], its time [s], load [N] and share of each phase then.
 
     The phases of the resultant are projected on its direction, so that they add up to it as the others do.
     """

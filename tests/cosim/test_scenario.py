@@ -143,7 +143,8 @@ def test_a_scenario_is_frozen():
 
 
 def test_shipped_scenarios_are_found():
-    assert [folder.name for folder in find_scenarios()] == sorted([*CASES, *UPWARD])
+    names = [*UPWARD, *CASES]
+    assert [folder.name for folder in find_scenarios() if folder.name in names] == sorted(names)
 
 
 @pytest.mark.parametrize("case", CASES)
