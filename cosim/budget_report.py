@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cosim.features import at_peak
 from cosim.moments import encounters
 from cosim.run_data import RunData
 from coupling.budget import AXES, TERMS
@@ -24,7 +25,7 @@ def rows(run: RunData) -> list[dict[str, Any]]:
     each encounter), and on the mean of the run; empty without a budget."""
     if not run.budget or not len(run.t_ns):
         return []
-    at_fz, at_fx = (int(run.component(name).argmax()) for name in ("fz", "fx"))
+    at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
     moments = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
     moments += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
     table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in moments for axis in ("fz", "fx")]

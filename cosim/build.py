@@ -17,7 +17,7 @@ from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble
 from coupling.steering import ByPower, Steering, fixed
-from coupling.structure import Structure, cone, plane_slope
+from coupling.structure import DEEP, Structure, cone, plane_slope
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
@@ -67,14 +67,15 @@ def build_ice(scenario: Scenario) -> Ice:
 def build_structure(scenario: Scenario) -> Structure:
     s = scenario.structure
     if s.kind == "plane":
-        return plane_slope(s.slope, top=s.top, toe_depth=s.toe_depth)
-    return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth)
+        return plane_slope(s.slope, top=s.top, toe_depth=DEEP if s.toe_depth is None else s.toe_depth,
+                           breaking=s.breaking)
+    return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth, breaking=s.breaking)
 
 
 def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
-    """The floe, its front on the structure's axis plane just touching the face at the height of its upper edge."""
+    """The floe, its front on the structure's axis plane just touching the face with the edge that meets it first."""
     s = scenario.sheet
-    front = float(structure.face_x(0.0, ice.freeboard))
+    front = float(structure.face_x(0.0, ice.freeboard if structure.faces_down else ice.freeboard - ice.h))
     grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
     held = np.zeros((grid.nodes, 2), bool)
     if s.back != "free":
@@ -99,7 +100,8 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         backfill=r.backfill, filling_time=r.filling_time,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength)
     pitch = r.columns_per_section * grid.d
-    reach = float(structure.radius(0.0)) if structure.revolved else 0.0
+    crest = float(structure.face_x(0.0, structure.top))  # of a plane that leans back, over which ice may ride
+    reach = float(structure.radius(0.0)) if structure.revolved else max(crest, 0.0)
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
     domain = Domain(x_max=reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
     return RubblePort(structure, physics, pitch=pitch, origin=grid.y0 + 0.5 * (pitch - grid.d),

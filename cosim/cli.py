@@ -1,4 +1,4 @@
-"""The command line: ``cosim run | sweep | replay | compare | report | verify | info | recover | list``.
+"""The command line: ``cosim run | sweep | replay | compare | report | baseline | verify | info | recover | list``.
 
 Only this file exits. Every expected error is one line on standard error: exit 2 for a bad input, 1 for a failed run or
 check. With ``--json`` standard output holds one JSON object and nothing else. Slow imports stay inside the commands.
@@ -127,13 +127,31 @@ def compare(
 ) -> None:
     """Put the features of a recording beside what was measured and what others computed."""
     from cosim import compare as comparison
+    from cosim.baselines.beside import beside
     from cosim.console import print_compare
+    from cosim.console_baseline import print_beside
     from cosim.recording import read_run
 
     data = read_run(recording)
     name, loaded = comparison.reference_of(data, reference)
-    rows = comparison.compare(data, loaded)
-    _print_json(comparison.to_json(data, name, rows)) if as_json else print_compare(loaded.title, rows)
+    rows, design = comparison.compare(data, loaded), beside(data)
+    if as_json:
+        _print_json({**comparison.to_json(data, name, rows), "design": design})
+    else:
+        print_compare(loaded.title, rows)
+        print_beside(design)
+
+
+@app.command()
+def baseline(scenario: ScenarioArgument, overrides: SetOption = None, as_json: JsonOption = False) -> None:
+    """Design formulas for the ice and the structure of a scenario: Croasdale, Ralston, Nevel."""
+    from cosim.baselines.methods import design_loads
+    from cosim.console_baseline import print_baseline
+    from cosim.scenario import load_scenario
+
+    loaded = load_scenario(scenario, overrides or ())
+    found = design_loads(loaded.model)
+    _print_json(found) if as_json else print_baseline(loaded.title, found)
 
 
 @app.command()

@@ -64,9 +64,9 @@ def event_lines(frame: Frame) -> list[str]:
 
 def run_tables(result: dict[str, Any]) -> list[Table]:
     """End of a run: peaks by phase, and the events."""
-    peaks = _table("load", "Fx [MN]", "at [s]", "Fz [MN]", "at [s]", "F [MN]", "at [s]", title="Peaks")
+    peaks = new_table("load", "Fx [MN]", "at [s]", "Fz [MN]", "at [s]", "F [MN]", "at [s]", title="Peaks")
     for name, values in [("total", result["peaks"]), *((p, result["peaks_by_phase"][p]) for p in PHASES)]:
-        cells = [_number(values[key][what], scale) for key in ("fx", "fz", "f")
+        cells = [number(values[key][what], scale) for key in ("fx", "fz", "f")
                  for what, scale in (("value", 1e-6), ("time", 1.0))]
         peaks.add_row(name, *cells)
     tables = [peaks]
@@ -77,9 +77,9 @@ def run_tables(result: dict[str, Any]) -> list[Table]:
 
 def events_table(events: list[dict[str, Any]], most: int = 25) -> Table:
     """Events with the load at their time; a long list ends with how many are left out."""
-    table = _table("at [s]", "event", "Fx [MN]", "Fz [MN]", "cells", title="Events")
+    table = new_table("at [s]", "event", "Fx [MN]", "Fz [MN]", "cells", title="Events")
     for e in events[:most]:
-        table.add_row(_number(e["time"], 1.0), e["kind"], _number(e["fx"], 1e-6), _number(e["fz"], 1e-6),
+        table.add_row(number(e["time"], 1.0), e["kind"], number(e["fx"], 1e-6), number(e["fz"], 1e-6),
                       str(e["cells"]))
     if len(events) > most:
         table.add_row("", f"... {len(events) - most} more", "", "", "")
@@ -88,7 +88,7 @@ def events_table(events: list[dict[str, Any]], most: int = 25) -> Table:
 
 def compare_table(title: str, rows: list[Row]) -> Table:
     """Simulated beside computed and measured."""
-    table = _table("feature", "simulated", "thesis", "ratio", "measured", "ratio", "unit", title=title)
+    table = new_table("feature", "simulated", "thesis", "ratio", "measured", "ratio", "unit", title=title)
     for row in rows:
         table.add_row(*compare_cells(row))
     return table
@@ -99,8 +99,8 @@ def compare_cells(row: Row) -> tuple[str, ...]:
     f = row.feature
     factor, unit = SCALES.get(f.unit, (1.0, f.unit))
     beside = [text for value in (f.thesis, f.measured)
-              for text in (_range(value, factor), _number(ratio(row.simulated, value), 1.0))]
-    return f.name, _number(row.simulated, factor), *beside, unit
+              for text in (_range(value, factor), number(ratio(row.simulated, value), 1.0))]
+    return f.name, number(row.simulated, factor), *beside, unit
 
 
 def print_run(result: dict[str, Any]) -> None:
@@ -134,7 +134,7 @@ def print_compare(title: str, rows: list[Row]) -> None:
 
 def print_scenarios(rows: list[dict[str, Any]]) -> None:
     """`cosim list`."""
-    table = _table("scenario", "event", "s", title="Scenarios")
+    table = new_table("scenario", "event", "s", title="Scenarios")
     table.columns[1].header = Text("what")
     for row in rows:
         table.add_row(row["name"], row["title"], f"{row['duration_s']:g}")
@@ -149,14 +149,14 @@ def warn(text: str) -> None:
     stderr.print(f"warning: {text}", style="yellow", highlight=False, markup=False, soft_wrap=True)
 
 
-def _table(*columns: str, title: str) -> Table:
+def new_table(*columns: str, title: str) -> Table:
     table = Table(title=title, box=box.SIMPLE, title_justify="left")
     for k, name in enumerate(columns):
         table.add_column(Text(name), justify="left" if k == 0 or name in ("event", "unit") else "right")
     return table
 
 
-def _number(value: float | None, factor: float) -> str:
+def number(value: float | None, factor: float) -> str:
     return "-" if value is None else f"{value * factor:.2f}"
 
 

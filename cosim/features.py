@@ -16,6 +16,12 @@ from cosim.run_data import RunData
 from coupling.interface import NS, PHASES, Array, IntArray
 
 
+def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> int | None:
+    """Window of the load that is largest in magnitude: an upward-breaking structure is pressed down, Fz < 0."""
+    values = np.abs(run.component(component, phase))
+    return int(values.argmax()) if len(values) else None
+
+
 def event_load(run: RunData, event: Kinds, component: str = "fx") -> float | None:
     """Load at the first event of a kind, all phases [N]; component ``fx``, ``fy``, ``fz`` or the resultant ``f``."""
     found = first_event(run, event)
@@ -32,14 +38,15 @@ def event_time(run: RunData, event: Kinds) -> float | None:
 
 
 def peak_load(run: RunData, component: str = "fx", phase: str | None = None) -> float | None:
-    """Largest load of a window, of all phases or of one [N]."""
-    return None if not len(run.t_ns) else float(run.component(component, phase).max())
+    """Load of the window with the largest in magnitude, of all phases or of one, with its sign [N]."""
+    k = at_peak(run, component, phase)
+    return None if k is None else float(run.component(component, phase)[k])
 
 
 def peak_time(run: RunData, component: str = "fx", phase: str | None = None) -> float | None:
     """Time of `peak_load` from first contact [s]."""
-    start = first_contact(run)
-    return None if start is None else float(run.t[run.component(component, phase).argmax()]) - start
+    start, k = first_contact(run), at_peak(run, component, phase)
+    return None if start is None or k is None else float(run.t[k]) - start
 
 
 def build_up_time(run: RunData, event: Kinds, component: str = "fx") -> float | None:
@@ -110,24 +117,23 @@ def rubble_volume(run: RunData) -> float | None:
 
 
 def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float | None]]:
-    """Largest Fx, Fz and resultant with their simulated times, of all phases or of one."""
+    """Fx, Fz and resultant, largest in magnitude, with their simulated times, of all phases or of one."""
     out: dict[str, dict[str, float | None]] = {}
     for name in ("fx", "fz", "f"):
-        values = run.component(name, phase)
-        k = int(values.argmax()) if len(values) else None
+        values, k = run.component(name, phase), at_peak(run, name, phase)
         out[name] = {"value": None, "time": None} if k is None else {"value": float(values[k]), "time": float(run.t[k])}
     return out
 
 
 def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
-    """For Fx, Fz and the resultant: peak [N], its time [s], and load [N] and share of each phase then.
+    """For Fx, Fz and the resultant: peak (by magnitude) [N], its time [s], load [N] and share of each phase then.
 
     The phases of the resultant are projected on its direction, so that they add up to it as the others do.
     """
     out: dict[str, dict[str, Any]] = {}
     for name in ("fx", "fz", "f") if len(run.t_ns) else ():
         total = run.component(name)
-        k = int(np.argmax(total))
+        k = at_peak(run, name) or 0
         peak = float(total[k])
         parts = run.load[k] @ (run.load[k].sum(axis=0) / peak if peak else np.zeros(3))
         loads = {p: float(parts[i] if name == "f" else run.component(name, p)[k]) for i, p in enumerate(PHASES)}

@@ -9,6 +9,7 @@ import json
 import socket
 import subprocess
 import time
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -92,12 +93,11 @@ def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
 
 
 def blueprint(run: RunData) -> rrb.Blueprint:
-    """Two cameras on the left, from above and from under water; loads and events on the right."""
+    """Two cameras on the left, of the sheet and of the rubble; loads and events on the right."""
     reach = 0.5 * float(run.metadata["spacing_m"]) * max(_nodes(run))
     above = _view("Sheet: blue to red = utilisation, dark = cracked",
                   (-0.5 * reach - 44, -0.6 * reach - 46, 0.4 * reach + 36), (-0.3 * reach - 8, -4, -4), (24, 34, 52))
-    below = _view("Rubble from under water: orange = rotating, green = sliding",
-                  (-58, -52, -24), (-12, 0, -7), (14, 52, 70))
+    below = _rubble_view(run)
     curves = [rrb.TimeSeriesView(origin=f"/load/{axis}", name=f"{label} on the structure [MN]",
                                  plot_legend=rrb.PlotLegend(corner="LeftTop", visible=True))
               for axis, label in (("fx", "Fx"), ("fz", "Fz"))]
@@ -107,6 +107,17 @@ def blueprint(run: RunData) -> rrb.Blueprint:
                        column_shares=[3, 2]),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"), rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"))
+
+
+def _rubble_view(run: RunData) -> Any:
+    """From under water, or from above it where ice rides up: close by, as blocks are as long as a few thicknesses."""
+    scenario = tomllib.loads(run.texts.get("scenario.toml", ""))
+    colours = "orange = rotating, green = sliding"
+    if scenario.get("structure", {}).get("breaking") != "upward":
+        return _view(f"Rubble from under water: {colours}", (-58, -52, -24), (-12, 0, -7), (14, 52, 70))
+    h = float(run.metadata["thickness_m"])
+    return _view(f"Rubble from above: {colours}", (-14.0 * h - 4, -16.0 * h - 8, 7.0 * h + 4), (-2.0 * h, 0, 0),
+                 (14, 52, 70))
 
 
 def _nodes(run: RunData) -> list[int]:

@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cosim import budget_report
+from cosim.baselines.beside import beside
 from cosim.compare import compare, reference_of
 from cosim.console import compare_cells
+from cosim.console_baseline import BESIDE, beside_rows, remarks
 from cosim.errors import FailedError
 from cosim.features import shares_at_peak, summary
 from cosim.run_data import RunData
@@ -47,9 +49,11 @@ def write_report(run: RunData, out: Path) -> None:
 
 def content(run: RunData) -> dict[str, Any]:
     """What the page shows, ready for its template."""
+    design = beside(run)
     figures = [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)]
     return {"summary": summary(run), "rows": _rows(run), "figures": figures, "shares": shares_at_peak(run),
             "budget": budget_report.rows(run), "bound": budget_report.largest_residual(run),
+            "design": {"head": BESIDE, "rows": beside_rows(design), "remarks": remarks(design)},
             "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0] / 1e6, "fz": e.force[2] / 1e6,
                         "cells": e.cells, "text": e.text} for e in run.events],
             "metadata": dict(run.metadata), "scenario": run.texts.get("scenario.toml", "")}
@@ -85,7 +89,8 @@ def draw_loads(figure: Figure, run: RunData) -> None:
     axes = figure.subplots(2, 1, sharex=True)
     for ax, name, label in zip(axes, ("fx", "fz"), ("Fx [MN]", "Fz [MN]"), strict=True):
         phases = np.array([run.component(name, p) for p in PHASES]) / 1e6
-        ax.stackplot(run.t, np.maximum(phases, 0.0), colors=COLOURS.values(), labels=list(PHASES), alpha=0.75, lw=0)
+        for side, labels in ((np.maximum, list(PHASES)), (np.minimum, ())):  # what presses down is stacked downwards
+            ax.stackplot(run.t, side(phases, 0.0), colors=COLOURS.values(), labels=labels, alpha=0.75, lw=0)
         ax.plot(run.t, phases.sum(axis=0), "k", lw=0.7, label="total")
         ax.set_ylabel(label)
         ax.grid(alpha=0.3)

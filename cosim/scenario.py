@@ -17,6 +17,7 @@ from typing import Any, Self
 
 from pydantic import ValidationError, model_validator
 
+from cosim.scenario_baseline import Baseline
 from cosim.scenario_errors import ScenarioError, explain
 from cosim.scenario_sections import (
     Case,
@@ -53,6 +54,7 @@ class ScenarioModel(Section):
     rubble: Rubble = Rubble.model_validate({})
     coupling: Coupling = Coupling.model_validate({})
     recording: Recording = Recording.model_validate({})
+    baseline: Baseline = Baseline.model_validate({})
 
     @model_validator(mode="after")
     def _times_are_whole_multiples(self) -> Self:
@@ -63,6 +65,18 @@ class ScenarioModel(Section):
                 _whole(f"coupling.{bound}", value, "rubble sub-step", self.rubble.substep)
         _whole("scenario.duration", self.scenario.duration, "time window", window)
         _whole("recording.every", self.recording.every, "time window", window)
+        return self
+
+    @model_validator(mode="after")
+    def _upward_breaking_can_run(self) -> Self:
+        draft, toe = self.ice.thickness * self.ice.density / self.water.density, self.structure.toe_depth
+        if self.structure.breaking == "downward":
+            return self
+        if toe is not None and toe <= draft:
+            raise fault("structure.toe_depth", f"the ice passes under the slope; use more than its draft {draft:g} m")
+        if self.rubble.initial_volume > 0.0:
+            raise fault("rubble.initial_volume", "initial rubble settles under the sheet, before a downward-breaking "
+                                                 'structure; start an upward-breaking one without: "0 m^3"')
         return self
 
     @model_validator(mode="after")

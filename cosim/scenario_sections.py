@@ -133,14 +133,15 @@ class Sheet(Section):
 
 
 class Structure(Section):
-    """[structure] Downward-breaking: a cone that narrows downwards, or an inclined plane."""
+    """[structure] A cone that narrows the way it breaks the ice, or an inclined plane."""
 
     kind: Literal["cone", "plane"]
+    breaking: Literal["downward", "upward"] = "downward"  #: which way the face bends the ice
     slope: Angle  #: from the horizontal [rad]
     waterline_radius: Length = None  #: of a cone [m]
-    neck_radius: Length = None  #: the cone narrows to this radius, below it stands a cylinder [m]
+    neck_radius: Length = None  #: the cone narrows to this radius, beyond it stands a cylinder [m]
     toe_depth: Length = None  #: depth of the structure's lower end, below it nothing is touched [m]
-    top: Length = 5.0  #: height of the structure above water [m]
+    top: Length = 5.0  #: height of the structure above water; over a lower one ice may ride [m]
 
     @model_validator(mode="after")
     def _has_a_shape(self) -> Self:
@@ -154,6 +155,9 @@ class Structure(Section):
             raise fault("waterline_radius", 'missing; a cone needs one, for example waterline_radius = "15 m"')
         elif self.neck_radius is not None and self.neck_radius >= self.waterline_radius:
             raise fault("neck_radius", f"must be below the waterline radius of {self.waterline_radius:g} m")
+        elif self.breaking == "upward" and self.toe_depth is None:
+            raise fault("toe_depth", 'missing; an upward-breaking cone widens downwards to its rim: add its depth, '
+                                     'for example toe_depth = "4 m"')
         return self
 
 

@@ -45,8 +45,8 @@ class OverlapContact:
         """``velocity`` of the drift [m/s], ``thickness`` and ``freeboard`` of the floating sheet [m]."""
         self._s, self._law, self._v, self._h = structure, law, velocity, thickness
         #: +1 if the upper edge of the ice touches (downward-breaking structure), -1 if the lower one does
-        self.face = 1.0 if structure.normal(0.0, 0.0)[2] < 0.0 else -1.0
-        self._z = freeboard - 0.5 * thickness + self.face * 0.5 * thickness
+        self.face = 1.0 if structure.faces_down else -1.0
+        self.touching_z = freeboard - 0.5 * thickness + self.face * 0.5 * thickness  #: of that edge afloat [m]
         self._dy = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
         self.set_edge(np.empty(0, np.int64), *np.zeros((3, 0)))
 
@@ -60,7 +60,7 @@ class OverlapContact:
 
     def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
         """L at the sample points (m, SAMPLES) [m] and the outward normal of the structure there (m, SAMPLES, 3)."""
-        z = self._z + y[:, 2]
+        z = self.touching_z + y[:, 2]
         x = self._x + self._v * t + y[:, 0]
         across = self._sample_y + y[:, 1:2]
         return overlap_of(x, across, z, self._s.z, self._s.r, self._s.revolved)

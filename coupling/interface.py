@@ -58,7 +58,8 @@ class Event:
 
     ``kind`` is one of ``cell_failure`` (a first failure after a quiet window), ``split`` (the sheet falls into two
     parts that both stay in the lattice), ``circumferential`` (a piece in front of the structure
-    breaks off), ``hand_over`` (a fragment has become blocks).
+    breaks off), ``hand_over`` (a fragment has become blocks), ``out_of_water`` (for the first time the sheet is lifted
+    by more than its draft, where its linear foundation ends).
     """
 
     t_ns: int

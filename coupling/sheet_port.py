@@ -55,7 +55,7 @@ class SheetPort:
         y = np.asarray(g.y0 + np.arange(g.ny) * g.d, np.float64)
         self.ice_y = y.copy()  #: middle of each column's ice [m]
         self.ice_y[[0, -1]] += 0.25 * g.d * np.array([1.0, -1.0])
-        normal = structure.normal(self.ice_y, np.full(g.ny, ice.freeboard))
+        normal = structure.normal(self.ice_y, np.full(g.ny, self.contact.touching_z))
         self.meets = np.isfinite(normal[:, 0]) & (normal[:, 0] < 0.0)  #: columns in whose way the structure stands
         with np.errstate(invalid="ignore", divide="ignore"):
             tan = np.where(self.meets, np.abs(normal[:, 0] / normal[:, 2]), 1.0)
@@ -64,7 +64,8 @@ class SheetPort:
         self.crushed_mass = 0.0  #: crushed off the edge of nodes that have left or still stand [kg]
         #: mean power of the rubble's forces on the sheet over the last window, in the fixed frame [W]
         self.power = 0.0
-        self._t, self._quiet = 0.0, True
+        self.draft = ice.h - ice.freeboard  #: lift at which the floating sheet leaves the water [m]
+        self._t, self._quiet, self._afloat = 0.0, True, True
         self._start = 0.0, sheet.state  #: time and state at the start of the last window
         self.setback = 0.0  #: distance by which the floe starts farther back than its grid [m]
         self._yielding_key: tuple[object, ...] = ()
@@ -91,6 +92,7 @@ class SheetPort:
         self.power = self._power(rubble)
         self._crush()
         events = self._events(out, parts, rubble_load) if out.failure else []
+        events += self._lifted_out(rubble_load + load)
         self._quiet = not out.failed
         r = out.reaction
         budget = {"pressed_sheet": r.foundation, "drag": r.drag, "inertia": r.inertia, "held": r.held,
@@ -268,6 +270,7 @@ class SheetPort:
         rows = rows[: int(np.argmin(present))] if not present.all() else rows
         nodes = rows * g.ny + column
         position, velocity = motion(nodes)
+        self._check_apart(position)
         lead = float(self.edge.lead(rows[:1])[0])
         return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity, self.sheet.ice.h,
                          nodes, stiffness, inertia)
@@ -282,6 +285,15 @@ class SheetPort:
         t, state = self._start
         begin = self._place(nodes, state, t)
         return begin, ((self._position(nodes) - begin) / (self._t - t))[:, ::2]
+
+    def _check_apart(self, position: Array) -> None:
+        """Refuses rows (m, 3), front first, of which one has passed the next."""
+        passed = np.flatnonzero(np.diff(position[:, 0]) >= 0.0)
+        if len(passed):
+            x, y = position[passed[0], :2]
+            raise SimulationError(f"t = {self._t:.3f} s: parts of the floe overlap by a cell at x = {x:.2f}, "
+                                  f"y = {y:.2f} m, because cracks carry no pressure between parts that stay in the "
+                                  "lattice; use a larger floe, so that a free part of it becomes rubble")
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""
@@ -307,6 +319,19 @@ class SheetPort:
         for fragment, at_structure in zip(self._fragments, self._at_structure, strict=True):
             events += self._piece_events(t_ns, load, len(out.failed), fragment, at_structure)
         return events
+
+    def _lifted_out(self, load: Array) -> list[Event]:
+        """One event of a run: where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the missing
+        buoyancy. That is right until the underside leaves the water at w = draft; beyond, it pulls too much."""
+        w = np.where(self.sheet.present, self.sheet.state.q[:, 0], 0.0)
+        highest = int(np.argmax(w))
+        if not self._afloat or w[highest] <= self.draft:
+            return []
+        self._afloat = False
+        text = (f"the sheet is lifted by {w[highest]:.2f} m, more than its draft of {self.draft:.2f} m: "
+                "from here on the linear foundation pulls it down with more than its weight")
+        where = self._position(np.array([highest]))[0]
+        return [self._event(round(self._t * NS), "out_of_water", load, 0, where, text)]
 
     def _piece_events(self, t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
         where = np.average(f.position, axis=0, weights=f.length * f.width)

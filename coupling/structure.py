@@ -90,6 +90,11 @@ class Structure:
         """Highest point of the structure [m]."""
         return float(self.profile[-1][0])
 
+    @property
+    def faces_down(self) -> bool:
+        """Whether the face at the waterline bends ice downwards; the other way it lifts the ice."""
+        return bool(self._slope(np.zeros(1))[0] > 0.0)
+
     def radius(self, z: ArrayLike) -> Array:
         """r(z) [m]; nan above the top and below the toe."""
         return np.interp(np.asarray(z, dtype=np.float64), self.z, self.r, left=np.nan, right=np.nan)

@@ -23,7 +23,10 @@ def crush(section: Section, window: float) -> tuple[float, Array]:
     physics, mass, momentum = section.physics, 0.0, np.zeros(3)
     for row in section.heavy[1:1 + int(section.heavy[0, 0])]:
         needed = float(row[3]) / window / physics.contact_strength  # contact area [m2]
-        ends = [(section.blocks[int(row[k])], np.hypot(row[4], row[5]) and sign * row[4:6] / np.hypot(row[4], row[5]))
+        along = float(np.hypot(row[4], row[5]))
+        if along == 0.0:
+            continue  # pressed from opposite sides alike: no side to cut back
+        ends = [(section.blocks[int(row[k])], sign * row[4:6] / along)
                 for k, sign in ((0, 1.0), (1, -1.0)) if row[k] >= 0]
         lacking, depth, block, normal = max(((*depth_for(b, n, needed, float(row[3]), window), b, n) for b, n in ends),
                                             key=lambda found: found[0])

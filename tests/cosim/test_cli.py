@@ -68,6 +68,7 @@ def test_info_and_compare(cosim, run_file):
     assert content["peaks"]["fx"]["value"] > content["peaks_by_phase"]["sliding"]["fx"]["value"] > 0
     code, out, err = cosim("compare", run_file, "--json")
     assert (code, err, json.loads(out)["run"]) == (0, "", "run.mcap")
+    assert json.loads(out)["design"]["methods"]["croasdale"]["fx"] == pytest.approx(13.1e6, abs=0.1e6)
     code, out, _ = cosim("compare", run_file)
     assert code == 0 and "circumferential_fx" in out and "van Vliet 2018" in out
     assert "circumferential" in cosim("info", run_file)[1]

@@ -11,6 +11,7 @@ from cosim.scenario import Scenario, ScenarioError, ScenarioModel, find_scenario
 
 CASES = ["van_vliet_2018_floe_165m", "van_vliet_2018_floe_34x68m", "van_vliet_2018_floe_55m_centre",
          "van_vliet_2018_floe_55m_corner"]
+UPWARD = ["icefloe_gla_upward_cone", "upward_plane"]
 FLOE = CASES[0]
 
 
@@ -122,7 +123,7 @@ def test_overrides_are_toml_or_text():
 
 
 @pytest.mark.parametrize("overrides", [(), ("ice.thickness=2 m", "rubble.substep=10 ms")])
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", [*CASES, *UPWARD])
 def test_resolved_toml_gives_the_same_scenario(case, overrides, tmp_path):
     s = load_scenario(case, overrides)
     assert ScenarioModel.model_validate(tomllib.loads(s.resolved_toml())) == s.model
@@ -142,7 +143,8 @@ def test_a_scenario_is_frozen():
 
 
 def test_shipped_scenarios_are_found():
-    assert [folder.name for folder in find_scenarios() if folder.name in CASES] == CASES
+    names = [*UPWARD, *CASES]
+    assert [folder.name for folder in find_scenarios() if folder.name in names] == sorted(names)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -172,7 +174,7 @@ def test_floes(case, length, width, nodes, axis):
     assert sheet.spacing == pytest.approx(length / (nodes[0] - 1), rel=1e-12)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", [*CASES, *UPWARD])
 def test_every_value_has_its_source_and_every_case_its_reference(case):
     s = load_scenario(case)
     for line in s.text.splitlines():
