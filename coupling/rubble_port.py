@@ -17,6 +17,7 @@ from rubble.initial import Pile, rest, settle
 from rubble.layer import Domain, RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.stock import books, energy_of
 
 OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
 LID = 1e9  #: stiffness of the still sheet under which initial rubble settles [N/m]
@@ -31,6 +32,7 @@ class HandOver:
     mass: float  #: of the fragment, without what was crushed before [kg]
     trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
     momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
+    angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, in the x-z plane
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,7 @@ class RubblePort:
         self._edges: dict[int, SheetEdge] = {}
         self._forces = SheetForces.none()
         self._fragments = 0
+        self._born = np.zeros(2)  #: kinetic energy, and that of weight and water, of all blocks when they were born [J]
 
     def add(self, fragment: Fragment) -> HandOver:
         """Turns a fragment into blocks where and as it moves now."""
@@ -85,7 +88,9 @@ class RubblePort:
             return 0.0
         number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
                                       b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
-        return self.layer.block(number).mass
+        block = self.layer.block(number)
+        self._born += energy_of(block, self.physics)
+        return block.mass
 
     def front_sections(self) -> list[int]:
         """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
@@ -200,6 +205,17 @@ class RubblePort:
     def cleared_mass(self) -> float:
         return self.layer.cleared_mass
 
+    @property
+    def energy(self) -> dict[str, float]:
+        """Energy of the blocks by term [J]; see `rubble.stock`."""
+        return {**books(self.layer), "born_kinetic": float(self._born[0]), "born_potential": float(self._born[1])}
+
+    @property
+    def momenta(self) -> dict[str, float]:
+        """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
+        lost = {"cleared": self.layer.cleared_momentum, "crushed": self.layer.crushed_momentum}
+        return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
+
 
 class NoRubble:
     """Breaking only: fragments are taken away and counted as cleared."""
@@ -207,6 +223,8 @@ class NoRubble:
     def __init__(self) -> None:
         self.mass, self.cleared_mass, self.power = 0.0, 0.0, 0.0
         self.budget: Pairs = {}
+        self.energy: dict[str, float] = {}
+        self.momenta: dict[str, float] = {}
 
     def add(self, fragment: Fragment) -> HandOver:
         mass = float(fragment.mass.sum())
