@@ -98,6 +98,7 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
     result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
     result.ledger = {"mass_error": books.mass_error, "momentum_error": books.momentum_error,
                      "angular_momentum_error": books.angular_momentum_error,
+                     "angular_momentum_change": books.angular_momentum_change,
                      "energy_residual": books.energy.relative, "sheet_energy_residual": books.sheet_energy_residual,
                      **books.energy.terms, **scheduler.rubble.momenta,
                      "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,

@@ -27,18 +27,22 @@ class Ledger:
     mass_error: float = 0.0  #: largest so far, relative to the initial mass
     momentum_error: float = 0.0  #: largest of all hand-overs, relative
     angular_momentum_error: float = 0.0  #: the same about the fragment's centre, in the x-z plane
+    #: largest part of a fragment's angular momentum that went because blocks do not have their mass at the nodes
+    angular_momentum_change: float = 0.0
     sheet_energy_residual: float = 0.0  #: of the sheet in its drifting frame, relative to the work done on it
     energy: EnergyBalance = field(default_factory=EnergyBalance)  #: of the whole system
     _work: float = 0.0
 
     def hand_over(self, t_ns: int, mass: float, trimmed: float, momentum_error: float,
-                  angular_momentum_error: float) -> None:
+                  angular_momentum_error: float, angular_momentum_change: float) -> None:
         """Books one fragment."""
         self.trimmed_mass += trimmed
         self.handed_over_mass += mass - trimmed
         self.momentum_error = max(self.momentum_error, momentum_error)
         self.angular_momentum_error = max(self.angular_momentum_error, angular_momentum_error)
+        self.angular_momentum_change = max(self.angular_momentum_change, angular_momentum_change)
         self._check("momentum of a hand-over", momentum_error, t_ns)
+        self._check("angular momentum of a hand-over", angular_momentum_error, t_ns)
 
     def crush(self, mass: float) -> None:
         """Books ice that blocks have lost at overloaded contacts."""

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coupling.budget import Pairs
-from coupling.handover import BlockBirth, births
+from coupling.handover import BlockBirth, births, centre_of, momenta_of
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
 from rubble import snapshot
+from rubble.block import Block
 from rubble.geometry import contiguous, moments
 from rubble.initial import Pile, rest, settle
 from rubble.layer import Domain, RubbleLayer
@@ -33,6 +34,7 @@ class HandOver:
     trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
     momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
     angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, in the x-z plane
+    angular_momentum_change: float = 0.0  #: part of it that goes because a block has its mass in its body, not at nodes
 
 
 @dataclass(frozen=True)
@@ -70,27 +72,31 @@ class RubblePort:
 
     def add(self, fragment: Fragment) -> HandOver:
         """Turns a fragment into blocks where and as it moves now."""
-        before, expected, trimmed, count = self.layer.momentum, np.zeros(3), 0.0, 0
+        about, mass = centre_of(fragment), float(fragment.mass.sum())
+        (left, scale), arrived, changed = momenta_of(fragment, about), np.zeros(4), np.zeros(4)
+        trimmed, count = mass, 0
         for birth in births(fragment, self.columns_per_section):
-            mass = self._place(birth)
-            trimmed += birth.mass - mass
-            expected += mass * birth.velocity
-            count += mass > 0.0
+            block = self._place(birth)
+            changed += birth.momenta(about)
+            if block is not None:
+                arrived, changed = arrived + _momenta(block, about), changed - _as_born(block, birth, about)
+                trimmed, count = trimmed - block.mass, count + 1
         self._fragments += 1
-        error = np.abs(self.layer.momentum - before - expected).max() / max(np.abs(expected).max(), 1e-9)
-        return HandOver(count, float(fragment.mass.sum()), trimmed, float(error) if count else 0.0)
+        error = np.abs(arrived + changed - left) / np.maximum(scale, 1e-9)
+        return HandOver(count, mass, trimmed, float(error[:3].max()), float(error[3]),
+                        float(abs(changed[3]) / max(scale[3], 1e-9)))
 
-    def _place(self, b: BlockBirth) -> float:
-        """Puts one block into its section, outside the structure; returns its mass, 0 if nothing is left."""
+    def _place(self, b: BlockBirth) -> Block | None:
+        """Puts one block into its section, outside the structure; None if nothing is left of it."""
         key = self.layer.key_at(b.y)
         polygon = self.layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
         if len(polygon) < 3 or moments(contiguous(polygon))[0] < SMALLEST * self.physics.thickness**2:
-            return 0.0
+            return None
         number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
                                       b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
         block = self.layer.block(number)
         self._born += energy_of(block, self.physics)
-        return block.mass
+        return block
 
     def front_sections(self) -> list[int]:
         """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
@@ -261,6 +267,20 @@ def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:
     """Sum of the forces on one edge, in x and z [N]."""
     total = forces.force[np.isin(forces.nodes, edge.nodes)].sum(axis=0)
     return float(total[0]), float(total[2])
+
+
+def _momenta(block: Block, about: Array) -> Array:
+    """Momentum x, y, z of a block and angular momentum about a point in the x-z plane, as it moves (4,)."""
+    v = block.body.velocity
+    p = block.mass * np.array([v.x, block.v_y, v.y])
+    arm = np.array(block.body.position) - about
+    return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + block.prism.inertia * block.body.angular_velocity])
+
+
+def _as_born(block: Block, birth: BlockBirth, about: Array) -> Array:
+    """The same for the ice of a block, where it is, with the motion of its nodes (4,)."""
+    p, arm = block.mass * birth.velocity, np.array(block.body.position) - about
+    return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + block.prism.inertia * birth.omega])
 
 
 def _ignore(mass: float) -> None:

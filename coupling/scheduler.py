@@ -28,6 +28,8 @@ class Balance(Protocol):
     def momentum_error(self) -> float: ...
     @property
     def angular_momentum_error(self) -> float: ...
+    @property
+    def angular_momentum_change(self) -> float: ...
 
 
 class Report(Protocol):
@@ -146,7 +148,7 @@ class Scheduler:
         moved = self.rubble.add(fragment)
         self.fragments += 1
         self.ledger.hand_over(self.t_ns, moved.mass, moved.trimmed, moved.momentum_error,
-                              moved.angular_momentum_error)
+                              moved.angular_momentum_error, moved.angular_momentum_change)
 
     def rubble_load(self) -> Array:
         """Total of the blocks' load on the structure in the last window, (3,) [N]."""

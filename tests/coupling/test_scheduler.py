@@ -158,4 +158,4 @@ def test_ice_that_gets_lost_stops_the_run():
 
 def test_momentum_that_gets_lost_stops_the_run():
     with pytest.raises(SimulationError, match="momentum of a hand-over"):
-        Ledger(100.0).hand_over(50, 10.0, 0.0, 1e-6, 0.0)
+        Ledger(100.0).hand_over(50, 10.0, 0.0, 1e-6, 0.0, 0.0)
