@@ -129,8 +129,10 @@ def draw_energy(figure: Figure, run: RunData) -> None:
     colours = [colour for colour, _ in ENERGY.values()]
     ax.stackplot(run.t, np.maximum(list(groups.values()), 0.0), labels=list(groups), colors=colours, lw=0)
     ax.stackplot(run.t, np.minimum(list(groups.values()), 0.0), colors=colours, lw=0)
-    ax.plot(run.t, work, "k", lw=1.2, label="work of the drift")
+    ax.plot(run.t, work, "w", lw=3.0)
+    ax.plot(run.t, work, "k", lw=1.4, label="work of the drift")
     ax.axhline(0.0, color="k", lw=0.6)
+    ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
     ax.set(ylabel="energy [MJ]", xlim=(0.0, run.t[-1]))
     figure.legend(*ax.get_legend_handles_labels(), fontsize=8, loc="outside right upper")
     largest = np.maximum.accumulate(np.maximum(np.abs(work), 1e-6))

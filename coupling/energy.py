@@ -11,6 +11,7 @@ The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.s
   lag of one window, the damping of the edge's spring, and what the spring stores: no store of its own, because the
   lattice stores the same deformation.
 
+While the sheet is served from a long step its terms stand still, all of them, and are booked when the step is done.
 A loss may be negative: the step of the rubble, its correction of overlap, dry tops and the side push add energy.
 """
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
-from lattice.energy import EnergyBooks, Served
+from lattice.energy import EnergyBooks
 from lattice.engine import EdgeContact, Engine, NoContact, State, Step, StepError
 from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, Grid, IntArray
@@ -25,6 +25,7 @@ from lattice.ice import Ice
 from lattice.memory import Memory, recall, remember
 from lattice.reaction import Reaction, Support, between, of_cubic, of_step
 from lattice.stiffness import Springs
+from lattice.stock import Served
 
 LONG_STEP_ERROR = 2e-4  #: largest estimated error of a displacement in a long step, as share of the thickness
 QUIET = 8  #: windows without a failure before the next long step: waves of the crack must have died down
