@@ -8,8 +8,8 @@ The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.s
 * hand-over: what a piece had in the lattice less what its blocks have when they are born (elastic energy is released;
   a rigid block does not bend, has lost its crushed edge, and brings along the water that moves with it),
 * interface: work that blocks do on the edge they meet less work that the lattice receives on its nodes. It holds the
-  lag of one window, the damping of the edge's spring, and what the spring stores: no store of its own, because the
-  lattice stores the same deformation.
+  lag of one window and what the edge's spring and mass take up: no store of its own, because the lattice stores the
+  same deformation.
 
 While the sheet is served from a long step its terms stand still, all of them, and are booked when the step is done.
 A loss may be negative: the step of the rubble, its correction of overlap, dry tops and the side push add energy.

@@ -111,7 +111,7 @@ class EnergyBooks:
     def begin(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Starts from a deflected state: the work that brought the sheet there counts as the rubble's."""
         self.measure(s, live, present)
-        self.rubble = self.stored
+        self.others.work = self.stored
 
     def measure(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Takes stock of a state."""

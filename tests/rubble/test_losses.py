@@ -122,8 +122,8 @@ def lively(substep, wrong=None, seconds=10.0):
     for i in range(9):
         add(layer, -4.0 - 5.0 * (i % 3), -4.0 - 4.0 * (i // 3), 4.0, 2.5, (1.0, 0.2 * (-1) ** i), flooded=None)
     start, x, rows = books(layer), np.array([-6.0, -9.0, -12.0, -15.0, -18.0]), round(0.05 / substep)
-    for w in range(round(seconds / 0.05)):
-        layer.set_sheet(0, x + 0.005 * w, np.zeros(5), -5.0 + 0.005 * w, np.tile((0.1, 0.0), (5, 1)), 3.0, (1e8, 3e7))
+    layer.set_sheet(0, x, np.zeros(5), -5.0, np.tile((0.1, 0.0), (5, 1)), 3.0, (1e8, 3e7), (5e4, 5e4))
+    for _ in range(round(seconds / 0.05)):  # the sheet goes on as it was: where it is set anew there are corrections
         layer.advance(rows)
     end = books(layer)
     return residual(start, end, wrong), max(abs(end[n] - start[n]) for n in end if n.endswith("_loss")), start, end
