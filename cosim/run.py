@@ -104,5 +104,5 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
                      "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,
                      "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
                      "cleared_mass": scheduler.rubble.cleared_mass,
-                     "interface_loss": scheduler.power.loss, "interface_exchanged": scheduler.power.exchanged,
+                     "interface_lost": scheduler.power.loss, "interface_exchanged": scheduler.power.exchanged,
                      **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")}}

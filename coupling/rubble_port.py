@@ -45,6 +45,7 @@ class Saved:
     edges: dict[int, SheetEdge]
     forces: SheetForces
     fragments: int
+    born: Array  #: (2,) energy of all blocks when they were born [J]
 
 
 class RubblePort:
@@ -178,7 +179,7 @@ class RubblePort:
 
     def save(self) -> Saved:
         """The rubble between two windows, for `restore`; this run goes on from the copy as well (`rubble.snapshot`)."""
-        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, self._fragments)
+        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, self._fragments, self._born.copy())
         self.restore(saved)
         return saved
 
@@ -186,6 +187,7 @@ class RubblePort:
         """Sets the rubble back; a window from here has the same bits as the first one from here."""
         self.layer = snapshot.restore(saved.layer, self.layer)
         self._edges, self._forces, self._fragments = saved.edges, saved.forces, saved.fragments
+        self._born = saved.born.copy()
 
     def blocks(self) -> BlockTable:
         t = self.layer.table()

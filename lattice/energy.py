@@ -16,6 +16,7 @@ the springs at the held nodes and momentum off all nodes, so that the two frames
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -69,6 +70,12 @@ class EnergyBooks:
     crushed: Stock = field(default_factory=Stock)  #: what rows took along of which nothing was left
     now: Stock = field(default_factory=Stock)  #: what the sheet has
     friction_of: Callable[[Array, Array], Array] = no_friction  #: part of the forces on nodes at y (m, 3) [N]
+
+    def __copy__(self) -> EnergyBooks:
+        """A copy with records of its own, see `memory.remember`."""
+        new = object.__new__(EnergyBooks)
+        new.__dict__.update({k: copy(v) if isinstance(v, Work | Stock) else v for k, v in vars(self).items()})
+        return new
 
     def __post_init__(self) -> None:
         e = self.engine

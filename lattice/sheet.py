@@ -12,7 +12,8 @@ try is half as long, and after an accepted one twice as long. The window of a fa
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -55,6 +56,10 @@ class LongStep:
     served: int = 0
     contact: Array = field(default_factory=lambda: np.empty((0, 3)))  #: force at the last window's end
     done: Served = field(default_factory=Served)  #: of the contact in the windows served, by the trapezoidal rule
+
+    def __copy__(self) -> LongStep:
+        """A copy with books of its own, see `memory.remember`."""
+        return replace(self, done=deepcopy(self.done))
 
 
 class Sheet:

@@ -121,7 +121,7 @@ def test_other_schemes_break_the_same_ice(scheme):
     assert other.fragments >= 2 and other.ledger["mass_error"] < 1e-12
     assert other.ledger["interface_exchanged"] > 0.0
     assert other.ledger.get("unconverged_windows", 0.0) == 0.0
-    assert other.ledger["interface_loss"] != usual.ledger["interface_loss"]
+    assert other.ledger["interface_lost"] != usual.ledger["interface_lost"]
 
 
 class Ends:

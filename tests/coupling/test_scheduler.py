@@ -48,13 +48,13 @@ class StubRubble:
     def __init__(self, trace, loss=0.0, share=0.0):
         self.trace, self.mass, self.cleared_mass, self.power, self.loss = trace, 0.0, 0.0, 0.0, loss
         self.windows, self.force, self.share, self.carried, self.budget = 0, 0.0, share, 0.0, {}
+        self.energy, self.momenta = {}, {}
 
     def save(self):
         return self.mass, self.windows, self.force
 
     def restore(self, saved):
         self.mass, self.windows, self.force = saved
-        self.energy, self.momenta = {}, {}
 
     def add(self, fragment):
         self.trace.append(f"born {fragment}")
