@@ -15,6 +15,7 @@ from rich.text import Text
 
 from cosim.compare import Range, Row, ratio
 from cosim.observer import RunInfo
+from coupling.energy import STORES
 from coupling.interface import NS, PHASES, Frame
 
 WIDTH = None if sys.stdout.isatty() else 120  #: a pipe has no width of its own
@@ -103,14 +104,29 @@ def compare_cells(row: Row) -> tuple[str, ...]:
     return f.name, number(row.simulated, factor), *beside, unit
 
 
+def ledger_lines(ledger: dict[str, float | None]) -> list[str]:
+    """Errors and masses of a run, and the energy terms that are at least 1 % of the work of the drift."""
+    known = {name: value for name, value in ledger.items() if value is not None}
+    errors = [f"{name} {value:.2g}" for name, value in known.items() if name.endswith(("_error", "residual", "_mass"))]
+    least = 0.01 * abs(known.get("drift_work", 0.0))
+    terms = [(name, value) for name, value in known.items()
+             if (name in STORES or name.endswith("_loss")) and abs(value) >= max(least, 1.0)]
+    lines = ["ledger: " + ", ".join(errors)]
+    if "drift_work" in known:
+        terms.sort(key=lambda term: -abs(term[1]))
+        went = ", ".join(f"{name.removesuffix('_loss')} {value / 1e6:.2f}" for name, value in terms)
+        lines.append(f"energy [MJ]: work of the drift {known['drift_work'] / 1e6:.2f}; {went}")
+    return lines
+
+
 def print_run(result: dict[str, Any]) -> None:
     """End of `cosim run`."""
     for table in run_tables(result):
         stdout.print(table)
-    ledger = ", ".join(f"{name} {value:.2g}" for name, value in result["ledger"].items() if value is not None)
+    ledger = "\n".join(ledger_lines(result["ledger"]))
     stdout.print(f"{result['simulated_s']:g} s simulated in {result['wall_s']:.1f} s "
                  f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, "
-                 f"{result['blocks']} blocks\nledger: {ledger}", highlight=False)
+                 f"{result['blocks']} blocks\n{ledger}", highlight=False)
     if result["recording"]:
         stdout.print(f"recording: {result['recording']}", highlight=False, soft_wrap=True)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,14 +22,31 @@ from cosim.console_baseline import BESIDE, beside_rows, remarks
 from cosim.errors import FailedError
 from cosim.features import shares_at_peak, summary
 from cosim.run_data import RunData
-from coupling.interface import NS, PHASES
+from coupling.energy import LIMIT
+from coupling.interface import NS, PHASES, Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = {"breaking": "#2f7ebc", "rotating": "#e6812b", "sliding": "#3a9b5c"}
-STORES = ("elastic_energy", "foundation_energy", "kinetic_energy")
-LOSSES = ("damping_loss", "scheme_loss", "fracture_loss", "handed_over_energy")
+#: where energy is or went: terms of `coupling.energy` that belong together, and their colour
+ENERGY = {
+    "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),
+    "friction on structure": ("#7fb3dc", ("contact_friction_loss", "friction_structure_loss",
+                                          "side_friction_structure_loss")),
+    "sheet: damping, scheme": ("#9a9fa6", ("damping_loss", "scheme_loss")),
+    "fracture, hand-over": ("#1d2733", ("fracture_loss", "handover_elastic_loss", "handover_potential_loss",
+                                        "handover_kinetic_loss")),
+    "stored in the sheet": ("#8d6cab", ("sheet_elastic", "sheet_foundation", "sheet_kinetic")),
+    "stored in the rubble": ("#e6812b", ("rubble_potential", "rubble_kinetic")),
+    "rubble: friction, impact": ("#f2b880", ("impact_ice_loss", "impact_structure_loss", "impact_sheet_loss",
+                                             "friction_ice_loss", "friction_sheet_loss", "side_friction_ice_loss",
+                                             "side_impact_loss")),
+    "water": ("#3a9b5c", ("drag_loss", "side_drag_loss", "dry_top_loss")),
+    "ice that left": ("#c9c24f", ("crushed_energy_loss", "cleared_energy_loss")),
+    "interface, step, overlap": ("#d45087", ("interface_loss", "stepping_loss", "correction_loss")),
+    "side push of the sections": ("#b03a2e", ("side_push_loss",)),
+}
 ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
 
 
@@ -69,7 +86,7 @@ def _rows(run: RunData) -> list[tuple[str, ...]]:
 
 def has_data(title: str, run: RunData) -> bool:
     """Whether a figure has something to show: a recording may hold no energy books and no force budget."""
-    needs = {"energy": "contact_work" in run.ledger, "carries": bool(run.budget)}
+    needs = {"drift": "drift_work" in run.ledger, "carries": bool(run.budget)}
     return all(there for word, there in needs.items() if word in title)
 
 
@@ -110,20 +127,36 @@ def draw_mass(figure: Figure, run: RunData) -> None:
 
 
 def draw_energy(figure: Figure, run: RunData) -> None:
-    """Work done on the sheet, what it stores and where the rest went."""
-    ax = figure.subplots()
-    terms = {name.rsplit("_", 1)[0].replace("_", " "): run.ledger[name] / 1e3 for name in STORES + LOSSES}
-    ax.stackplot(run.t, np.maximum(list(terms.values()), 0.0), labels=list(terms), alpha=0.8, lw=0)
-    work = (run.ledger["contact_work"] + run.ledger["rubble_work"]) / 1e3
-    ax.plot(run.t, work, "k", lw=1.0, label="work on the sheet")
-    ax.set(xlabel="time [s]", ylabel="energy [kJ]", xlim=(0.0, run.t[-1]))
-    ax.legend(fontsize=8, loc="upper left", ncols=2)
-    ax.grid(alpha=0.3)
+    """Where the drift's work is or went, what else put energy in (below zero), and what is not explained."""
+    ax, low = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
+    work = run.ledger["drift_work"] / 1e6
+    groups = {name: energy_group(run, names) / 1e6 for name, (_, names) in ENERGY.items()}
+    colours = [colour for colour, _ in ENERGY.values()]
+    ax.stackplot(run.t, np.maximum(list(groups.values()), 0.0), labels=list(groups), colors=colours, lw=0)
+    ax.stackplot(run.t, np.minimum(list(groups.values()), 0.0), colors=colours, lw=0)
+    ax.plot(run.t, work, "w", lw=3.0)
+    ax.plot(run.t, work, "k", lw=1.4, label="work of the drift")
+    ax.axhline(0.0, color="k", lw=0.6)
+    ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
+    ax.set(ylabel="energy [MJ]", xlim=(0.0, run.t[-1]))
+    figure.legend(*ax.get_legend_handles_labels(), fontsize=8, loc="outside right upper")
+    largest = np.maximum.accumulate(np.maximum(np.abs(work), 1e-6))
+    low.semilogy(run.t, np.maximum(np.abs(run.ledger["energy_residual"]) / 1e6 / largest, 1e-12), "k", lw=0.9)
+    low.axhline(LIMIT, color="#b03a2e", lw=0.9, ls="--")
+    low.text(0.01 * run.t[-1], LIMIT, "a run stops here", color="#b03a2e", fontsize=8, va="bottom")
+    low.set(xlabel="time [s]", ylabel="residual / work", ylim=(1e-12, 1.0))
+    for axes in (ax, low):
+        axes.grid(alpha=0.3)
+
+
+def energy_group(run: RunData, names: Sequence[str]) -> Array:
+    """Sum of those terms that the run has, (windows,) [J]."""
+    return np.sum([run.ledger[n] for n in names if n in run.ledger] or [np.zeros(len(run.t))], axis=0)
 
 
 FIGURES: dict[str, Callable[[Any, RunData], None]] = {
     "Load on the structure by phase": draw_loads,
     "What carries the load": budget_report.draw,
     "Ice that has left the sheet": draw_mass,
-    "Work and energy of the sheet": draw_energy,
+    "Where the work of the drift went": draw_energy,
 }

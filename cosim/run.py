@@ -97,9 +97,12 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
     books = scheduler.ledger
     result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
     result.ledger = {"mass_error": books.mass_error, "momentum_error": books.momentum_error,
-                     **scheduler.sheet.energy, "energy_residual": books.energy_residual,
+                     "angular_momentum_error": books.angular_momentum_error,
+                     "angular_momentum_change": books.angular_momentum_change,
+                     "energy_residual": books.energy.relative, "sheet_energy_residual": books.sheet_energy_residual,
+                     **books.energy.terms, **scheduler.rubble.momenta,
                      "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,
                      "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
                      "cleared_mass": scheduler.rubble.cleared_mass,
-                     "interface_loss": scheduler.power.loss, "interface_exchanged": scheduler.power.exchanged,
+                     "interface_lost": scheduler.power.loss, "interface_exchanged": scheduler.power.exchanged,
                      **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")}}

@@ -28,6 +28,29 @@ class BlockBirth:
     centre: Array  #: (2,) centre of mass of its nodes [m]
     velocity: Array  #: (3,) of the centre of mass [m/s]
     omega: float  #: from x towards z [rad/s]
+    inertia: float  #: moment of inertia of its nodes about their centre [kg m2]
+
+    def momenta(self, about: Array) -> Array:
+        """Momentum x, y, z of its ice, and angular momentum about a point (2,) in the x-z plane, (4,)."""
+        arm, p = self.centre - about, self.mass * self.velocity
+        return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + self.inertia * self.omega])
+
+
+def centre_of(fragment: Fragment) -> Array:
+    """Centre of mass of a fragment's nodes in the x-z plane (2,) [m]."""
+    mass = np.maximum(fragment.mass, 0.0)
+    return np.average(fragment.position[:, [0, 2]], axis=0, weights=mass if mass.any() else fragment.length)
+
+
+def momenta_of(fragment: Fragment, about: Array) -> tuple[Array, Array]:
+    """Momentum of a fragment's nodes x, y, z and angular momentum about a point in the x-z plane (4,), and what they
+    would be if no parts cancelled (4,): their scale."""
+    mass, v = np.maximum(fragment.mass, 0.0)[:, None], fragment.velocity
+    arm, own = fragment.position[:, [0, 2]] - about, mass[:, 0] * fragment.thickness**2 / 12.0
+    parts = np.column_stack((mass * v, mass[:, 0] * arm[:, 0] * v[:, 2], -mass[:, 0] * arm[:, 1] * v[:, 0],
+                             -own * fragment.tilt_rate))
+    total, scale = parts.sum(axis=0), np.abs(parts).sum(axis=0)
+    return np.append(total[:3], total[3:].sum()), np.append(np.full(3, scale[:3].max()), scale[3:].sum())
 
 
 def births(fragment: Fragment, columns_per_section: int) -> Iterator[BlockBirth]:
@@ -54,9 +77,10 @@ def _birth(f: Fragment, n: IntArray) -> BlockBirth:
     arm = node - centre
     spin = m * (arm[:, 0] * (f.velocity[n, 2] - velocity[2]) - arm[:, 1] * (f.velocity[n, 0] - velocity[0]))
     own = m * f.thickness**2 / 12.0  # rotary inertia of a node (2.22)
-    omega = float((spin - own * f.tilt_rate[n]).sum() / (m * (arm**2).sum(axis=1) + own).sum())
+    inertia = float((m * (arm**2).sum(axis=1) + own).sum())
+    omega = float((spin - own * f.tilt_rate[n]).sum() / inertia)
     y = float(np.average(f.position[n, 1], weights=m))
-    return BlockBirth(polygon, cuts, widths, angle, y, float(mass.sum()), centre, velocity, omega)
+    return BlockBirth(polygon, cuts, widths, angle, y, float(mass.sum()), centre, velocity, omega, inertia)
 
 
 def _angle(x: Array, z: Array, tilt: Array, weight: Array) -> float:

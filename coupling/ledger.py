@@ -1,21 +1,24 @@
 """Balances of a run, checked in every window: what was there is still there, under its name.
 
 Mass: sheet + rubble + crushed + cleared = initial. Momentum: the blocks that a fragment has become carry what the
-same ice carried in the sheet.
+same ice carried in the sheet. Energy: see `coupling.energy`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
+from coupling.energy import EnergyBalance
 from coupling.interface import NS, SimulationError
 
 ENERGY_TOLERANCE = 1e-3  #: of the work done on the sheet
+MASS_TOLERANCE = 1e-12  #: of the initial mass
 
 
 @dataclass
 class Ledger:
-    """Running balances; ``tolerance`` is the largest relative error that a run survives."""
+    """Running balances; ``tolerance`` is the largest relative error of a hand-over's momentum that a run survives."""
 
     initial_mass: float  #: [kg]
     tolerance: float = 1e-9
@@ -23,40 +26,47 @@ class Ledger:
     handed_over_mass: float = 0.0  #: that has become blocks [kg]
     mass_error: float = 0.0  #: largest so far, relative to the initial mass
     momentum_error: float = 0.0  #: largest of all hand-overs, relative
-    energy_residual: float = 0.0  #: of the sheet, relative to the work done on it
+    angular_momentum_error: float = 0.0  #: the same about the fragment's centre, in the x-z plane
+    #: largest part of a fragment's angular momentum that went because blocks do not have their mass at the nodes
+    angular_momentum_change: float = 0.0
+    sheet_energy_residual: float = 0.0  #: of the sheet in its drifting frame, relative to the work done on it
+    energy: EnergyBalance = field(default_factory=EnergyBalance)  #: of the whole system
     _work: float = 0.0
 
-    def hand_over(self, t_ns: int, mass: float, trimmed: float, momentum_error: float) -> None:
+    def hand_over(self, t_ns: int, mass: float, trimmed: float, momentum_error: float,
+                  angular_momentum_error: float, angular_momentum_change: float) -> None:
         """Books one fragment."""
         self.trimmed_mass += trimmed
         self.handed_over_mass += mass - trimmed
         self.momentum_error = max(self.momentum_error, momentum_error)
+        self.angular_momentum_error = max(self.angular_momentum_error, angular_momentum_error)
+        self.angular_momentum_change = max(self.angular_momentum_change, angular_momentum_change)
         self._check("momentum of a hand-over", momentum_error, t_ns)
+        self._check("angular momentum of a hand-over", angular_momentum_error, t_ns)
 
     def crush(self, mass: float) -> None:
         """Books ice that blocks have lost at overloaded contacts."""
         self.trimmed_mass += mass
 
     def close_window(self, t_ns: int, sheet: float, crushed: float, rubble: float, cleared: float,
-                     energy: dict[str, float]) -> dict[str, float]:
-        """Closes the books of a window; returns them by name [kg], [J].
-
-        ``energy`` holds the sheet's terms; its ``energy_residual`` is set against the work done on the sheet.
-        """
+                     sheet_energy: Mapping[str, float], rubble_energy: Mapping[str, float]) -> dict[str, float]:
+        """Closes the books of a window; returns them by name [kg], [J]."""
         crushed += self.trimmed_mass
         error = abs(sheet + rubble + crushed + cleared - self.initial_mass) / self.initial_mass
         self.mass_error = max(self.mass_error, error)
-        self._check("mass", error, t_ns)
-        self._check("energy of the sheet", self._energy(energy), t_ns, ENERGY_TOLERANCE)
-        return {"sheet_mass": sheet, "rubble_mass": rubble, "crushed_mass": crushed, "cleared_mass": cleared,
-                "mass_error": error, **energy}
+        self._check("mass", error, t_ns, MASS_TOLERANCE)
+        books = {"sheet_mass": sheet, "rubble_mass": rubble, "crushed_mass": crushed, "cleared_mass": cleared,
+                 "mass_error": error}
+        if sheet_energy:
+            self._check("energy of the sheet", self._sheet(sheet_energy), t_ns, ENERGY_TOLERANCE)
+            books["sheet_energy_residual"] = sheet_energy["sheet_energy_residual"]
+        return books | self.energy.close(t_ns, sheet_energy, rubble_energy)
 
-    def _energy(self, energy: dict[str, float]) -> float:
+    def _sheet(self, energy: Mapping[str, float]) -> float:
         """Residual of the sheet's energy relative to the largest work that was exchanged so far."""
-        if energy:
-            self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]))
-            self.energy_residual = abs(energy["energy_residual"]) / max(self._work, 1.0)
-        return self.energy_residual
+        self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]))
+        self.sheet_energy_residual = abs(energy["sheet_energy_residual"]) / max(self._work, 1.0)
+        return self.sheet_energy_residual
 
     def _check(self, term: str, error: float, t_ns: int, tolerance: float | None = None) -> None:
         allowed = self.tolerance if tolerance is None else tolerance

@@ -8,15 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coupling.budget import Pairs
-from coupling.handover import BlockBirth, births
+from coupling.handover import BlockBirth, births, centre_of, momenta_of
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
 from rubble import snapshot
+from rubble.block import Block
 from rubble.geometry import contiguous, moments
 from rubble.initial import Pile, rest, settle
 from rubble.layer import Domain, RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.stock import books, energy_of
 
 OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
 LID = 1e9  #: stiffness of the still sheet under which initial rubble settles [N/m]
@@ -31,6 +33,8 @@ class HandOver:
     mass: float  #: of the fragment, without what was crushed before [kg]
     trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
     momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
+    angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, in the x-z plane
+    angular_momentum_change: float = 0.0  #: part of it that goes because a block has its mass in its body, not at nodes
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,7 @@ class Saved:
     edges: dict[int, SheetEdge]
     forces: SheetForces
     fragments: int
+    born: Array  #: (2,) energy of all blocks when they were born [J]
 
 
 class RubblePort:
@@ -64,28 +69,35 @@ class RubblePort:
         self._edges: dict[int, SheetEdge] = {}
         self._forces = SheetForces.none()
         self._fragments = 0
+        self._born = np.zeros(2)  #: kinetic energy, and that of weight and water, of all blocks when they were born [J]
 
     def add(self, fragment: Fragment) -> HandOver:
         """Turns a fragment into blocks where and as it moves now."""
-        before, expected, trimmed, count = self.layer.momentum, np.zeros(3), 0.0, 0
+        about, mass = centre_of(fragment), float(fragment.mass.sum())
+        (left, scale), arrived, changed = momenta_of(fragment, about), np.zeros(4), np.zeros(4)
+        trimmed, count = mass, 0
         for birth in births(fragment, self.columns_per_section):
-            mass = self._place(birth)
-            trimmed += birth.mass - mass
-            expected += mass * birth.velocity
-            count += mass > 0.0
+            block = self._place(birth)
+            changed += birth.momenta(about)
+            if block is not None:
+                arrived, changed = arrived + _momenta(block, about), changed - _as_born(block, birth, about)
+                trimmed, count = trimmed - block.mass, count + 1
         self._fragments += 1
-        error = np.abs(self.layer.momentum - before - expected).max() / max(np.abs(expected).max(), 1e-9)
-        return HandOver(count, float(fragment.mass.sum()), trimmed, float(error) if count else 0.0)
+        error = np.abs(arrived + changed - left) / np.maximum(scale, 1e-9)
+        return HandOver(count, mass, trimmed, float(error[:3].max()), float(error[3]),
+                        float(abs(changed[3]) / max(scale[3], 1e-9)))
 
-    def _place(self, b: BlockBirth) -> float:
-        """Puts one block into its section, outside the structure; returns its mass, 0 if nothing is left."""
+    def _place(self, b: BlockBirth) -> Block | None:
+        """Puts one block into its section, outside the structure; None if nothing is left of it."""
         key = self.layer.key_at(b.y)
         polygon = self.layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
         if len(polygon) < 3 or moments(contiguous(polygon))[0] < SMALLEST * self.physics.thickness**2:
-            return 0.0
+            return None
         number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
                                       b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
-        return self.layer.block(number).mass
+        block = self.layer.block(number)
+        self._born += energy_of(block, self.physics)
+        return block
 
     def front_sections(self) -> list[int]:
         """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
@@ -167,7 +179,7 @@ class RubblePort:
 
     def save(self) -> Saved:
         """The rubble between two windows, for `restore`; this run goes on from the copy as well (`rubble.snapshot`)."""
-        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, self._fragments)
+        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, self._fragments, self._born.copy())
         self.restore(saved)
         return saved
 
@@ -175,6 +187,7 @@ class RubblePort:
         """Sets the rubble back; a window from here has the same bits as the first one from here."""
         self.layer = snapshot.restore(saved.layer, self.layer)
         self._edges, self._forces, self._fragments = saved.edges, saved.forces, saved.fragments
+        self._born = saved.born.copy()
 
     def blocks(self) -> BlockTable:
         t = self.layer.table()
@@ -200,6 +213,17 @@ class RubblePort:
     def cleared_mass(self) -> float:
         return self.layer.cleared_mass
 
+    @property
+    def energy(self) -> dict[str, float]:
+        """Energy of the blocks by term [J]; see `rubble.stock`."""
+        return {**books(self.layer), "born_kinetic": float(self._born[0]), "born_potential": float(self._born[1])}
+
+    @property
+    def momenta(self) -> dict[str, float]:
+        """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
+        lost = {"cleared": self.layer.cleared_momentum, "crushed": self.layer.crushed_momentum}
+        return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
+
 
 class NoRubble:
     """Breaking only: fragments are taken away and counted as cleared."""
@@ -207,6 +231,8 @@ class NoRubble:
     def __init__(self) -> None:
         self.mass, self.cleared_mass, self.power = 0.0, 0.0, 0.0
         self.budget: Pairs = {}
+        self.energy: dict[str, float] = {}
+        self.momenta: dict[str, float] = {}
 
     def add(self, fragment: Fragment) -> HandOver:
         mass = float(fragment.mass.sum())
@@ -243,6 +269,20 @@ def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:
     """Sum of the forces on one edge, in x and z [N]."""
     total = forces.force[np.isin(forces.nodes, edge.nodes)].sum(axis=0)
     return float(total[0]), float(total[2])
+
+
+def _momenta(block: Block, about: Array) -> Array:
+    """Momentum x, y, z of a block and angular momentum about a point in the x-z plane, as it moves (4,)."""
+    v = block.body.velocity
+    p = block.mass * np.array([v.x, block.v_y, v.y])
+    arm = np.array(block.body.position) - about
+    return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + block.prism.inertia * block.body.angular_velocity])
+
+
+def _as_born(block: Block, birth: BlockBirth, about: Array) -> Array:
+    """The same for the ice of a block, where it is, with the motion of its nodes (4,)."""
+    p, arm = block.mass * birth.velocity, np.array(block.body.position) - about
+    return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + block.prism.inertia * birth.omega])
 
 
 def _ignore(mass: float) -> None:

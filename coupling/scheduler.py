@@ -26,6 +26,10 @@ class Balance(Protocol):
     def trimmed(self) -> float: ...
     @property
     def momentum_error(self) -> float: ...
+    @property
+    def angular_momentum_error(self) -> float: ...
+    @property
+    def angular_momentum_change(self) -> float: ...
 
 
 class Report(Protocol):
@@ -69,6 +73,10 @@ class RubbleParticipant(Protocol):
     def power(self) -> float: ...
     def save(self) -> Any: ...
     def restore(self, saved: Any) -> None: ...
+    @property
+    def energy(self) -> dict[str, float]: ...
+    @property
+    def momenta(self) -> dict[str, float]: ...
     def add(self, fragment: Fragment) -> Balance: ...
     def sections_in_use(self) -> list[int]: ...
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None: ...
@@ -89,6 +97,7 @@ class Scheduler:
         self.t_ns, self.fragments, self.power = 0, 0, PowerBooks()
         self.jump = True  #: no window has gone before, or blocks were born in it: nothing to predict from
         self.notes: dict[str, float] = {}  #: what a scheme has to say about the window
+        ledger.energy.open(sheet.energy, rubble.energy)
 
     def macro_step(self) -> Frame:
         """One window: exchange, balances, and the frame for observers."""
@@ -98,8 +107,9 @@ class Scheduler:
         load = self.rubble.load()
         load[Phase.BREAKING] += report.load
         books = self.ledger.close_window(self.t_ns, self.sheet.mass, self.sheet.crushed, self.rubble.mass,
-                                         self.rubble.cleared_mass, self.sheet.energy)
+                                         self.rubble.cleared_mass, self.sheet.energy, self.rubble.energy)
         books |= self.power.close_window(self.rubble.power, self.sheet.power, self.window_ns / NS) | self.notes
+        books |= self.rubble.momenta
         self.jump = bool(report.fragments)
         self._next = self._steering(self._next, self.power, self.jump)
         budget = force_budget(load.sum(axis=0), report.budget, self.rubble.budget)
@@ -137,7 +147,8 @@ class Scheduler:
         """A fragment leaves the sheet's books and becomes rubble."""
         moved = self.rubble.add(fragment)
         self.fragments += 1
-        self.ledger.hand_over(self.t_ns, moved.mass, moved.trimmed, moved.momentum_error)
+        self.ledger.hand_over(self.t_ns, moved.mass, moved.trimmed, moved.momentum_error,
+                              moved.angular_momentum_error, moved.angular_momentum_change)
 
     def rubble_load(self) -> Array:
         """Total of the blocks' load on the structure in the last window, (3,) [N]."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from numba import njit
@@ -11,6 +12,7 @@ from numba import njit
 from coupling.budget import Pairs
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
+from coupling.friction_share import friction_part
 from coupling.interface import (
     NS,
     Array,
@@ -73,6 +75,8 @@ class SheetPort:
         self._fragments: list[Fragment] = []
         self._at_structure: list[bool] = []
         self._renew_edge()
+        sheet.energy.friction_of = partial(friction_part, structure, law.friction, self.contact.face,
+                                           self.contact.level)
 
     # ---- one window -------------------------------------------------------------------------------------------
 
@@ -220,12 +224,17 @@ class SheetPort:
 
     @property
     def energy(self) -> dict[str, float]:
-        """Energy of the sheet by term [J]; see `lattice.energy`."""
-        e = self.sheet.energy
-        return {"contact_work": e.contact, "rubble_work": e.rubble, "elastic_energy": e.elastic,
-                "foundation_energy": e.foundation, "kinetic_energy": e.kinetic, "damping_loss": e.damping,
-                "scheme_loss": e.scheme, "fracture_loss": e.fracture, "handed_over_energy": e.handed_over,
-                "energy_residual": e.residual}
+        """Energy of the sheet by term, for an observer at rest [J]; see `lattice.energy` and `coupling.energy`."""
+        e, v = self.sheet.energy, self.velocity
+        friction, contact = e.rub.work + v * e.rub.push, e.touch.work + v * e.touch.push
+        crushed = e.crushed.elastic + e.crushed.foundation + e.crushed.kinetic_at(v)
+        return {"drift_work": v * e.hold, "received_work": e.others.work + v * e.others.push,
+                "sheet_elastic": e.now.elastic, "sheet_foundation": e.now.foundation,
+                "sheet_kinetic": e.now.kinetic_at(v), "contact_friction_loss": -friction,
+                "contact_crushing_loss": friction - contact, "damping_loss": e.damping, "scheme_loss": e.scheme,
+                "fracture_loss": e.fracture, "edge_crushed_loss": crushed, "left_elastic": e.pieces.elastic,
+                "left_foundation": e.pieces.foundation, "left_kinetic": e.pieces.kinetic_at(v),
+                "contact_work": e.contact, "rubble_work": e.rubble, "sheet_energy_residual": e.residual}
 
     # ---- what others see --------------------------------------------------------------------------------------
 

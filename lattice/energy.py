@@ -8,19 +8,24 @@ with |g_i|^2 = v_i . K v_i + a_i . M a_i (Runge-Kutta energy identity; the schem
 gamma^2 diag(-1, 1)). N is what the scheme takes from motions shorter than its step. Removing a cell takes its elastic
 energy at the start of the step; a piece that leaves takes all it has. What then is missing is the residual.
 
-Energies are those of an observer who drifts with the ice, to whom the structure moves and does the work.
+Energies are those of an observer who drifts with the ice, to whom the structure moves and does the work. One at rest
+finds V times the impulse along x more for every force, and for what holds the edge nothing else. That force is read off
+the springs at the held nodes and momentum off all nodes, so that the two frames check each other.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, field
 
 import numpy as np
 from numba import njit
 
 from lattice.engine import GAMMA, Engine, State, Step
 from lattice.grid import Array, IntArray
-from lattice.springs import spring_energy
+from lattice.springs import pull_on, spring_energy
+from lattice.stock import Served, Stock, Work
 
 
 @njit(cache=True)
@@ -34,21 +39,69 @@ def weighted_square(weight, x, present):
     return total
 
 
+@njit(cache=True)
+def momentum_of(mass, u_dot, present):
+    """Momentum along x of the nodes that are present [N s]; ``mass`` (2 n,), ``u_dot`` (n, 2)."""
+    total = 0.0
+    for n in range(u_dot.shape[0]):
+        if present[n]:
+            total += mass[2 * n] * u_dot[n, 0]
+    return total
+
+
+def no_friction(y: Array, force: Array) -> Array:
+    """A contact without friction."""
+    return np.zeros_like(force)
+
+
 @dataclass
 class EnergyBooks:
     """Running sums since the start of a run [J]."""
 
     engine: Engine
-    contact: float = 0.0  #: work of the structure on the sheet
-    rubble: float = 0.0  #: work of other external forces
+    touch: Work = field(default_factory=Work)  #: of the structure
+    rub: Work = field(default_factory=Work)  #: the part of it that is friction
+    others: Work = field(default_factory=Work)  #: of other external forces
+    hold: float = 0.0  #: impulse along x of what holds the edge [N s]
     damping: float = 0.0  #: hydrodynamic and material damping
     scheme: float = 0.0  #: taken by the time integration from motions shorter than its step
     fracture: float = 0.0  #: elastic energy of cells when they failed
-    handed_over: float = 0.0  #: energy of pieces that left
-    stored: float = 0.0  #: elastic + foundation + kinetic of the sheet now
-    kinetic: float = 0.0
-    elastic: float = 0.0
-    foundation: float = 0.0
+    pieces: Stock = field(default_factory=Stock)  #: what pieces took along
+    crushed: Stock = field(default_factory=Stock)  #: what rows took along of which nothing was left
+    now: Stock = field(default_factory=Stock)  #: what the sheet has
+    friction_of: Callable[[Array, Array], Array] = no_friction  #: part of the forces on nodes at y (m, 3) [N]
+
+    def __copy__(self) -> EnergyBooks:
+        """A copy with records of its own, see `memory.remember`."""
+        new = object.__new__(EnergyBooks)
+        new.__dict__.update({k: copy(v) if isinstance(v, Work | Stock) else v for k, v in vars(self).items()})
+        return new
+
+    def __post_init__(self) -> None:
+        e = self.engine
+        self._held = e.held_x
+        self._held_cells = np.flatnonzero(self._held[e.dof_u].any(axis=1))
+        self.now.mass = float(e.M_u[::2].sum())
+
+    @property
+    def contact(self) -> float:
+        """Work of the structure on the sheet [J]."""
+        return self.touch.work
+
+    @property
+    def rubble(self) -> float:
+        """Work of other external forces [J]."""
+        return self.others.work
+
+    @property
+    def handed_over(self) -> float:
+        """Energy of what has left [J]."""
+        return self.pieces.energy + self.crushed.energy
+
+    @property
+    def stored(self) -> float:
+        """Elastic, foundation and kinetic energy of the sheet now [J]."""
+        return self.now.energy
 
     @property
     def residual(self) -> float:
@@ -65,13 +118,22 @@ class EnergyBooks:
     def begin(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Starts from a deflected state: the work that brought the sheet there counts as the rubble's."""
         self.measure(s, live, present)
-        self.rubble = self.stored
+        self.others.work = self.stored
 
     def measure(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Takes stock of a state."""
-        self.elastic = self.springs(s.u, s.q, live)
-        self.kinetic, self.foundation = self._kinetic(s, present), self._foundation(s.q, present)
-        self.stored = self.elastic + self.kinetic + self.foundation
+        self.now = self._stock(s, live, present)
+
+    def _stock(self, s: State, live: np.ndarray, present: np.ndarray) -> Stock:
+        mass = self.engine.M_u
+        return Stock(self.springs(s.u, s.q, live), self._foundation(s.q, present), self._kinetic(s, present),
+                     float(momentum_of(mass, s.u_dot, present)), float(mass[::2][present].sum()))
+
+    def holding(self, u: Array, u_dot: Array, force_u: Array, live: np.ndarray) -> float:
+        """Force along x that the held nodes need beside the springs and ``force_u`` (n, 2) [N]."""
+        e = self.engine
+        pull = pull_on(e.dof_u, *e.sparse_u, self._held_cells, live, self._held, (u + e.alpha * u_dot).ravel())
+        return float(pull) - float(force_u.ravel()[self._held].sum())
 
     def _kinetic(self, s: State, present: np.ndarray) -> float:
         e = self.engine
@@ -88,8 +150,12 @@ class EnergyBooks:
         for b, stage in zip((1.0 - GAMMA, GAMMA), step.stages, strict=True):
             s = stage.state
             v = np.column_stack((s.u_dot[nodes], s.q_dot[nodes, 0]))
-            self.contact += dt * b * float((stage.contact * v).sum())
-            self.rubble += dt * b * float(np.vdot(force_u, s.u_dot) + np.vdot(force_q, s.q_dot))
+            y = np.column_stack((s.u[nodes], s.q[nodes, 0]))
+            self.touch.add(dt * b, stage.contact, v)
+            self.rub.add(dt * b, self.friction_of(y, stage.contact), v)
+            self.others.add(dt * b, force_u, s.u_dot)
+            self.others.work += dt * b * float(np.vdot(force_q, s.q_dot))
+            self.hold += dt * b * self.holding(s.u, s.u_dot, force_u, live)
             rate = self.springs(s.u_dot, s.q_dot, live)
             water = float(weighted_square(e.C_q, s.q_dot, present))
             self.damping += dt * b * (water + 2.0 * e.alpha * rate)
@@ -98,10 +164,11 @@ class EnergyBooks:
         self.scheme += 0.5 * (GAMMA * dt) ** 2 * (norms[1] - norms[0])
         self.measure(step.state, live, present)
 
-    def book_served(self, work: float, damping: float, s: State, live: np.ndarray, present: np.ndarray) -> None:
+    def book_served(self, served: Served, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Books the part of a step that was used before the rest was given up; s is the state at its end."""
-        self.contact += work
-        self.damping += damping
+        for mine, done in ((self.touch, served.touch), (self.rub, served.rub)):
+            mine.work, mine.push = mine.work + done.work, mine.push + done.push
+        self.damping, self.hold = self.damping + served.damping, self.hold + served.hold
         self.measure(s, live, present)
 
     def loss_rate(self, s: State, live: np.ndarray, present: np.ndarray) -> float:
@@ -116,8 +183,8 @@ class EnergyBooks:
         live[cell] = True
         self.fracture += self.springs(s.u, s.q, live)
 
-    def book_departure(self, nodes: IntArray, cells: np.ndarray, s: State) -> None:
-        """Books a piece that leaves with all its energy; ``cells`` is the mask of its live cells."""
+    def book_departure(self, nodes: IntArray, cells: np.ndarray, s: State, *, crushed: bool = False) -> None:
+        """Books ice that leaves with all its energy; ``cells`` is the mask of its live cells."""
         mask = np.zeros(self.engine.grid.nodes, bool)
         mask[nodes] = True
-        self.handed_over += self.springs(s.u, s.q, cells) + self._kinetic(s, mask) + self._foundation(s.q, mask)
+        (self.crushed if crushed else self.pieces).add(self._stock(s, cells, mask))

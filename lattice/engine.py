@@ -160,6 +160,11 @@ class Engine:
         self._intact = np.ones(grid.cells, bool)
         self._systems: dict[float, tuple[CrackedSystem, CrackedSystem]] = {}
 
+    @property
+    def held_x(self) -> np.ndarray:
+        """In-plane dof that are held along x, (2 nodes,)."""
+        return np.asarray(self._held & (np.arange(2 * self.grid.nodes) % 2 == 0))
+
     def use(self, dt: float) -> None:
         """Makes the systems of this step length the present ones."""
         a = self._a = GAMMA * dt

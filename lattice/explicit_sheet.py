@@ -17,6 +17,7 @@ from collections.abc import Callable
 import numpy as np
 
 from lattice.criteria import cell_strains, combined_utilisation
+from lattice.energy import EnergyBooks
 from lattice.engine import EdgeContact, State
 from lattice.explicit import ExplicitEngine
 from lattice.grid import Array, Grid, IntArray
@@ -43,7 +44,7 @@ class ExplicitSheet(Sheet):
         super().__init__(grid, ice, springs, dt, held=held, damping=damping, alpha=alpha, share=share)
         self.engine: ExplicitEngine = ExplicitEngine(grid, ice, springs, dt, held_in_plane=held, damping=damping,
                                                      alpha=alpha, step=step)
-        self.energy.engine = self.engine
+        self.energy = EnergyBooks(self.engine)
         self._contact_time = contact_time
         self.support = Support(self.engine, held)
         self.block = max(1, int(contact_time / self.engine.dt))  #: sub-steps between two evaluations of the contact
@@ -106,12 +107,11 @@ class ExplicitSheet(Sheet):
         steps = min(self.block, e.sub_steps - done)
         patch = e.contact(t + (done + 0.5 * steps) * e.dt, contact)
         before = e.displacement()
+        holding, at = self._holding(), e.at(contact.nodes)[:, :3]
         out = e.march(steps, load, patch, self._lively)
         self._note(out.steps * e.dt, before, load)
         impulse[contact.nodes] += out.steps * e.dt * out.contact
-        self.energy.contact += out.contact_work
-        self.energy.rubble += out.work
-        self.energy.damping += out.loss
+        self._book(out, load, holding, at, contact)
         rate, self._loss_rate = self._loss_rate, out.loss / (out.steps * e.dt)
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > LIVELY * self.energy.stored
@@ -123,6 +123,23 @@ class ExplicitSheet(Sheet):
             total += 0.5 * time * (old + new)
         nodes = load.row * self.grid.ny + load.column
         self._applied += time * np.array(self.support.applied(nodes, load.force[:, 0], load.force[:, 2]))
+
+    def _holding(self) -> float:
+        """Force along x at the held edge now [N]."""
+        u, _ = self.engine.displacement(-self.engine.alpha / self.engine.dt)  # x + alpha v
+        return self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
+
+    def _book(self, out: Marched, load: NodeForces, holding: float, at: Array, contact: EdgeContact) -> None:
+        """Books sub-steps before which the edge was held with ``holding`` [N] and its nodes stood ``at`` (m, 3) [m]."""
+        books, time = self.energy, out.steps * self.engine.dt
+        after = self.engine.at(contact.nodes)[:, :3]
+        books.touch.work += out.contact_work
+        books.touch.push += time * float(out.contact[:, 0].sum())
+        books.rub.add(time, books.friction_of(after, out.contact), (after - at) / time)
+        books.others.work += out.work
+        books.others.push += time * float(load.force[:, 0].sum())
+        books.hold += 0.5 * time * (holding + self._holding())
+        books.damping += out.loss
 
     # ---- failure -----------------------------------------------------------------------------------------------
 
@@ -196,9 +213,8 @@ class ExplicitSheet(Sheet):
     def _book_half(self, share: float, load: NodeForces, patch: NodeForces) -> None:
         """Work in the half sub-step by which the velocities of the march lie before the ends of a window."""
         v = np.hstack((self.state.u_dot, self.state.q_dot))
-        for f, name in ((patch, "contact"), (load, "rubble")):
-            done = share * self.engine.dt * float((f.padded() * v[f.row * self.grid.ny + f.column]).sum())
-            setattr(self.energy, name, getattr(self.energy, name) + done)
+        for f, work in ((patch, self.energy.touch), (load, self.energy.others)):
+            work.add(share * self.engine.dt, f.padded(), v[f.row * self.grid.ny + f.column])
 
 
 def _apart(cells: IntArray, columns: int) -> IntArray:

@@ -12,7 +12,8 @@ try is half as long, and after an accepted one twice as long. The window of a fa
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from lattice.ice import Ice
 from lattice.memory import Memory, recall, remember
 from lattice.reaction import Reaction, Support, between, of_cubic, of_step
 from lattice.stiffness import Springs
+from lattice.stock import Served
 
 LONG_STEP_ERROR = 2e-4  #: largest estimated error of a displacement in a long step, as share of the thickness
 QUIET = 8  #: windows without a failure before the next long step: waves of the crack must have died down
@@ -53,7 +55,11 @@ class LongStep:
     windows: int
     served: int = 0
     contact: Array = field(default_factory=lambda: np.empty((0, 3)))  #: force at the last window's end
-    work: float = 0.0  #: of the contact in the windows served, by the trapezoidal rule [J]
+    done: Served = field(default_factory=Served)  #: of the contact in the windows served, by the trapezoidal rule
+
+    def __copy__(self) -> LongStep:
+        """A copy with books of its own, see `memory.remember`."""
+        return replace(self, done=deepcopy(self.done))
 
 
 class Sheet:
@@ -146,8 +152,9 @@ class Sheet:
             return None
         force = contact.evaluate(t + self.dt, edge_displacement(state, contact.nodes))[0]
         out = Outcome(0.5 * (plan.contact + force), force, parts=self.parts)
-        way = edge_displacement(state, contact.nodes) - edge_displacement(self.state, contact.nodes)
-        plan.work += float((out.contact_mean * way).sum())
+        before, after = edge_displacement(self.state, contact.nodes), edge_displacement(state, contact.nodes)
+        plan.done.touch.add(self.dt, out.contact_mean, (after - before) / self.dt)
+        plan.done.rub.add(self.dt, self.energy.friction_of(after, out.contact_mean), (after - before) / self.dt)
         mean = of_cubic(self.state, state, self.dt)
         out.reaction = between(self.support, self.state, state, self.dt, mean, self.live_cells, self.present)
         self.state, self.utilisation = state, utilisation
@@ -173,10 +180,12 @@ class Sheet:
     def _drop_long_step(self) -> None:
         """Goes on from the last window served."""
         if (plan := self._long) is not None:
-            loss = [self.energy.loss_rate(plan.step.at(k / plan.windows), self.live_cells, self.present)
-                    for k in range(plan.served + 1)]
-            damping = self.dt * (sum(loss) - 0.5 * (loss[0] + loss[-1]))
-            self.energy.book_served(plan.work, damping, self.state, self.live_cells, self.present)
+            states = [plan.step.at(k / plan.windows) for k in range(plan.served + 1)]
+            loss = [self.energy.loss_rate(s, self.live_cells, self.present) for s in states]
+            hold = [self.energy.holding(s.u, s.u_dot, np.zeros_like(s.u), self.live_cells) for s in states]
+            plan.done.damping = self.dt * (sum(loss) - 0.5 * (loss[0] + loss[-1]))
+            plan.done.hold = self.dt * (sum(hold) - 0.5 * (hold[0] + hold[-1]))
+            self.energy.book_served(plan.done, self.state, self.live_cells, self.present)
             self._long, self._windows = None, min(2, self._longest)
 
     # ---- one window -------------------------------------------------------------------------------------------
@@ -270,7 +279,7 @@ class Sheet:
         live = self.live_cells
         self.present[nodes] = False
         cells = np.flatnonzero(np.isin(self.grid.cell_nodes, nodes).any(axis=1) & self.intact)
-        self.energy.book_departure(nodes, live & ~self.live_cells, self.state)
+        self.energy.book_departure(nodes, live & ~self.live_cells, self.state, crushed=True)
         self.intact[cells] = False
         if len(cells):
             self.engine.remove(cells)

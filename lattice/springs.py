@@ -51,3 +51,17 @@ def spring_force(dof, place, value, live, x):
                 for i in range(TOUCHED):
                     out[dof[c, place[k, i]]] += e * value[k, i]
     return out
+
+
+@njit(cache=True)
+def pull_on(dof, place, value, cells, live, chosen, x):
+    """Sum of K x over the ``chosen`` dof (n,), of the springs of those ``cells`` that are live [N]."""
+    total = 0.0
+    for c in cells:
+        if live[c]:
+            for k in range(place.shape[0]):
+                e = elongation(dof, place, value, x, c, k)
+                for i in range(TOUCHED):
+                    if chosen[dof[c, place[k, i]]]:
+                        total += e * value[k, i]
+    return total

@@ -47,6 +47,8 @@ class Block:
     phase: int = ROTATING
     flooded: float = 1.0  #: share of its head of water that the top carries
     load: Array = field(default_factory=lambda: np.zeros(3))  #: mean force on the structure over the last window [N]
+    #: force and moment of the water's pressure in the last sub-step, nan if unknown [N, N, N m]
+    pressure: Array = field(default_factory=lambda: np.full(3, np.nan))
     thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: constant force and moment beside the weight [N, N, N m]
 
     @property

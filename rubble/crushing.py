@@ -16,11 +16,13 @@ from numba import njit
 from rubble.block import Block, cut_block
 from rubble.geometry import Array
 from rubble.section import Section
+from rubble.stock import energy_of
 
 
-def crush(section: Section, window: float) -> tuple[float, Array]:
-    """Cut the overloaded blocks of a section after a window [s]; returns crushed mass [kg] and its momentum (3,)."""
-    physics, mass, momentum = section.physics, 0.0, np.zeros(3)
+def crush(section: Section, window: float) -> tuple[float, Array, float]:
+    """Cut the overloaded blocks of a section after a window [s]; returns crushed mass [kg], its momentum (3,) and its
+    energy [J]."""
+    physics, mass, momentum, energy = section.physics, 0.0, np.zeros(3), 0.0
     for row in section.heavy[1:1 + int(section.heavy[0, 0])]:
         needed = float(row[3]) / window / physics.contact_strength  # contact area [m2]
         along = float(np.hypot(row[4], row[5]))
@@ -32,11 +34,13 @@ def crush(section: Section, window: float) -> tuple[float, Array]:
                                             key=lambda found: found[0])
         if lacking > physics.slop:
             before = np.array([block.body.velocity.x, block.v_y, block.body.velocity.y])
+            had = sum(energy_of(block, physics))
             lost = _cut(block, normal, depth)
             mass, momentum = mass + lost, momentum + lost * before
+            energy += had - sum(energy_of(block, physics))
     if mass > 0.0:
         section.changed()
-    return mass, momentum
+    return mass, momentum, energy
 
 
 @njit("float64(float64[:, ::1], float64, float64, float64)", cache=True, nogil=True)

@@ -12,15 +12,19 @@ from numba import njit
 from rubble.block import Block
 from rubble.geometry import Array, IntArray, moments, place, submerged
 
+#: sums of `side_steps` [J]: done by the structure's side push, which a section takes from nowhere; lost to friction on
+#: the structure and on ice; lost to drag
+PUSHED, RUBBED, DRAGGED, ACROSS = 0, 1, 3, 4
+
 
 @njit("void(float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64[:, ::1], "
-      "float64[:, ::1], float64[:, ::1])", cache=True, nogil=True)
+      "float64[:, ::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
 def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, offset: IntArray, mass: Array,
-               state: Array, sums: Array, side: Array, load: Array) -> None:
+               state: Array, sums: Array, side: Array, load: Array, work: Array) -> None:
     """Move the blocks of a section across by one window; ``load`` (n, 3) becomes the mean force on the structure [N].
 
     ``sums`` as in `contacts`; ``side`` (2, n): y and v_y, changed here; ``mass`` with added mass; ``half_rho_cd`` =
-    rho_w C_d / 2. Backward Euler for friction and drag, so neither turns the motion around.
+    rho_w C_d / 2; ``work`` see ACROSS. Backward Euler for friction and drag, so neither turns the motion around.
     """
     for i in range(mass.shape[0]):
         load[i, 0], load[i, 1], load[i, 2] = sums[i, 0] / dt, -sums[i, 2] / dt, sums[i, 1] / dt
@@ -31,11 +35,15 @@ def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, of
         slip = np.hypot(state[i, 3], state[i, 4])
         grip, rub = sums[i, 3] / np.hypot(across, slip), mu_ice * sums[i, 5] / np.hypot(free, slip)
         v = free * max(0.0, 1.0 - (grip + rub) / mass[i])
+        work[PUSHED] += 0.5 * mass[i] * (free * free - side[1, i] ** 2)
         if grip + rub > 0.0:
+            work[RUBBED] += 0.5 * mass[i] * (free * free - v * v) * grip / (grip + rub)
+            work[RUBBED + 1] += 0.5 * mass[i] * (free * free - v * v) * rub / (grip + rub)
             load[i, 1] += mass[i] * (free - v) / dt * grip / (grip + rub)
         wet = moments(submerged(place(polygons[offset[i]:offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0)))
         side[1, i] = v / (1.0 + dt * half_rho_cd * wet[0] * abs(v) / mass[i])
         side[0, i] += dt * side[1, i]
+        work[DRAGGED] += 0.5 * mass[i] * (v * v - side[1, i] ** 2)
 
 
 @njit("bool_(float64[:, ::1], float64[:, ::1], float64, float64, float64, float64, float64, float64)", cache=True,
@@ -50,14 +58,17 @@ def all_inside(state: Array, side: Array, y: float, half: float, x_min: float, x
     return inside
 
 
-def push(block: Block, neighbour: Block | None) -> None:
+def push(block: Block, neighbour: Block | None) -> float:
     """Plastic impact across: both blocks go on with their common speed; without a neighbour the block stops.
 
-    Momentum across is kept between blocks; sheet and structure take it up.
+    Momentum across is kept between blocks; sheet and structure take it up. Returns the energy that is lost [J].
     """
+    m = float(block.body.mass)
     if neighbour is None:
-        block.v_y = 0.0
-        return
-    m, n = float(block.body.mass), float(neighbour.body.mass)
-    if (block.y - neighbour.y) * (block.v_y - neighbour.v_y) < 0.0:  # they approach each other
-        block.v_y = neighbour.v_y = (m * block.v_y + n * neighbour.v_y) / (m + n)
+        lost, block.v_y = 0.5 * m * block.v_y**2, 0.0
+        return lost
+    n, apart = float(neighbour.body.mass), block.v_y - neighbour.v_y
+    if (block.y - neighbour.y) * apart >= 0.0:  # they do not approach each other
+        return 0.0
+    block.v_y = neighbour.v_y = (m * block.v_y + n * neighbour.v_y) / (m + n)
+    return 0.5 * m * n / (m + n) * apart**2

@@ -25,6 +25,7 @@ from rubble.geometry import Array, IntArray
 from rubble.lateral import all_inside, push, side_steps
 from rubble.physics import RATE_DEPENDENT, RubblePhysics
 from rubble.section import Section
+from rubble.stock import energy_of
 
 Solids = Callable[[float], Sequence[Array]]  #: convex polygons of the structure in the plane y
 
@@ -62,6 +63,8 @@ class RubbleLayer:
         self.cleared_mass, self.crushed_mass = 0.0, 0.0  #: [kg]
         self.cleared_momentum = np.zeros(3)  #: true mass times velocity at leaving [N s]
         self.crushed_momentum = np.zeros(3)
+        self.cleared_energy, self.crushed_energy = 0.0, 0.0  #: what that ice took along, see `stock` [J]
+        self.side_impact = 0.0  #: energy lost when blocks meet across the sections [J]
         self.time = 0.0  #: [s]
         self.hold_across = False  #: blocks stay in their section, while initial rubble settles
         self.threads, self._pool = threads, ThreadPoolExecutor(threads) if threads > 1 else None
@@ -192,11 +195,13 @@ class RubbleLayer:
         p, side = self.physics, section.side
         mu = 0.1 if p.mu_ice_ice == RATE_DEPENDENT else float(p.mu_ice_ice)  # across: sliding, the upper end of speed
         side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, section.polygons, section.corners, section.moved,
-                   section.state, section.sums, side.copy() if self.hold_across else side, section.load)
+                   section.state, section.sums, side.copy() if self.hold_across else side, section.load,
+                   section.across_work)
         section.update_phases()
         if section.heavy[0, 0] > 0:
-            mass, momentum = crush(section, self._window)
+            mass, momentum, energy = crush(section, self._window)
             self.crushed_mass += mass
+            self.crushed_energy += energy
             self.crushed_momentum += momentum
 
     def _cross(self, key: int, section: Section, block: Block, step: int) -> None:
@@ -209,12 +214,13 @@ class RubbleLayer:
             new.adopt(block)
         else:
             block.y = section.y + (0.5 if step > 0 else -0.5) * self.pitch * (1 - 1e-12)
-            push(block, neighbour)
+            self.side_impact += push(block, neighbour)
 
     def _clear(self, section: Section, block: Block) -> None:
         section.take(block)
         self.cleared.append(block.id)
         self.cleared_mass += block.mass
+        self.cleared_energy += sum(energy_of(block, self.physics))
         self.cleared_momentum += block.mass * np.array([block.body.velocity.x, block.v_y, block.body.velocity.y])
 
     # ---- results ----------------------------------------------------------------------------------------------

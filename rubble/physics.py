@@ -66,6 +66,11 @@ class RubblePhysics:
         return self.slop_ratio * self.thickness
 
     @property
+    def afloat(self) -> float:
+        """Energy of weight and water of ice that floats flat, g (h - draft) / 2 per mass [J/kg]."""
+        return 0.5 * self.g * self.thickness * (1.0 - self.rho_i / self.rho_w)
+
+    @property
     def filling_rate(self) -> float:
         """Share of the head on a wet top that comes per second [1/s]; 0: it stays dry."""
         return 1.0 / self.filling_time if self.backfill == "filling" else 0.0

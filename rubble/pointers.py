@@ -29,12 +29,12 @@ def offsets() -> IntArray:
 
 
 def body_offsets() -> IntArray:
-    """Where a body keeps x, z, angle, v_x, v_z, omega, force x, z, torque [bytes].
+    """Where a body keeps x, z, angle, v_x, v_z, omega, force x, z, torque, 1 / mass, 1 / moment of inertia [bytes].
 
     cffi does not know the struct, so they are looked up in a body with known values.
     """
-    known = np.array([0.5, -1.25, 0.375, 2.75, -3.5, 4.125, -5.25, 6.625, 7.875])
-    body = pymunk.Body(1.0, 1.0)
+    known = np.array([0.5, -1.25, 0.375, 2.75, -3.5, 4.125, -5.25, 6.625, 7.875, 0.0625, 0.015625])
+    body = pymunk.Body(16.0, 64.0)
     body.position, body.angle, body.velocity = (known[0], known[1]), known[2], (known[3], known[4])
     body.angular_velocity, body.torque = known[5], known[8]
     lib.cpBodySetForce(body._body, (known[6], known[7]))

@@ -13,6 +13,8 @@ from rubble.block import Block
 from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS
 from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction, slot_table
 from rubble.geometry import Array, contiguous, exposed_edges, nearest_edges, overlap_area
+from rubble.lateral import ACROSS
+from rubble.losses import STOCK, WORK, stock
 from rubble.phases import ROTATING, update_phases
 from rubble.physics import RubblePhysics
 from rubble.pointers import address, body_offsets
@@ -20,7 +22,7 @@ from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
 from rubble.space import Solid, new_space
 from rubble.stepping import STEP, read_bodies, run
 from rubble.trim import cut_away
-from rubble.water import EDGE_COLUMNS, SHARES, STATE_COLUMNS
+from rubble.water import EDGE_COLUMNS, SHARES, STATE_COLUMNS, WATER_SUMS
 
 _BODY = body_offsets()
 HEAVY = 64  #: overloaded pairs kept in a window
@@ -38,11 +40,12 @@ class Section:
         self.slopes = np.ascontiguousarray(self.faces[rise < -0.1 * np.hypot(run, rise)])  #: those that meet the drift
         self.blocks: list[Block] = []
         self.sheet: SheetBody | None = None
-        #: energy lost to drag [J]; impulse of dead load and water in x and z [N s]; work of dry tops [J]; and, for the
-        #: last window alone, the impulses of the water's SHARES [N s]
-        self.losses = np.zeros(4 + SHARES)
+        #: see `water.WATER_SUMS`; and, for the last window alone, the impulses of the water's SHARES [N s]
+        self.losses = np.zeros(WATER_SUMS + SHARES)
         self.momentum_gain = np.zeros(2)  #: of the blocks with added mass over the last window, x and z [N s]
         self.dead_load = np.zeros(2)  #: weight and constant thrust of the blocks in the last window, x and z [N]
+        self.work, self.across_work = np.zeros(WORK), np.zeros(ACROSS)  #: see `losses`, `lateral`
+        self.thrust_work = 0.0  #: [J]
         self.sheet_sums = np.zeros(8)  #: see `contacts.accumulate`
         self.heavy = np.zeros((HEAVY + 1, HEAVY_COLUMNS))
         self.water = np.array([physics.rho_w * physics.g, physics.rho_w / 2, physics.form_drag, physics.skin_drag,
@@ -148,11 +151,14 @@ class Section:
         self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
         self.corners = np.cumsum([0, *map(len, outlines)], dtype=np.int64)
         self.moved = np.array([b.body.mass for b in blocks], np.float64)  #: mass with added mass [kg]
+        self._mass = np.array([b.mass for b in blocks], np.float64)
+        self._thrust = np.array([b.thrust for b in blocks], np.float64).reshape(-1, 3)
+        self._pressure = np.array([b.pressure for b in blocks], np.float64).reshape(-1, 3)
         #: y and v_y (2, n), and mean force on the structure over the last window (n, 3) [N]; the blocks have views
         self.side = np.ascontiguousarray(np.array([b.across for b in blocks], np.float64).reshape(-1, 2).T)
         self.load = np.array([b.load for b in blocks], np.float64).reshape(-1, 3)
         for i, block in enumerate(blocks):
-            block.across, block.load = self.side[:, i], self.load[i]
+            block.across, block.load, block.pressure = self.side[:, i], self.load[i], self._pressure[i]
         self._flooded = np.array([b.flooded for b in blocks], np.float64)
         #: see `phases.update_phases`
         self.axes = np.array([(b.prism.reach + self.physics.thickness, b.prism.long_axis,
@@ -175,11 +181,13 @@ class Section:
             self.sheet.nodes[:, 2:] = 0.0
         if not self.blocks and self.sheet is None:
             return
-        done = 0
+        done, start = 0, self.state
         while done < n_substeps:
             done += self._run(n_substeps - done)
         self.state = self._state[:len(self.blocks)].copy()
         self.momentum_gain = self.moved @ self.state[:, 3:5] - before
+        if self._thrust.any():
+            self.thrust_work += float(np.vdot(self._thrust, self.state[:, :3] - start[:, :3]))
         if self.physics.filling_rate > 0.0:
             for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
                 block.flooded = share
@@ -192,7 +200,8 @@ class Section:
         done = run(n, self.physics.substep, STEP, self._space, self._bodies, _BODY, self._state, self._edges,
                    self._offset, self._dead, self.water, self._flooded, self.losses, spring, driver, reader.header,
                    reader.pairs, reader.layout, self._addresses, self._slots, self._friction.structure, self.side,
-                   self._limit, self.sheet_sums, self.sums, nodes, self.heavy)
+                   self._limit, self.sheet_sums, self.sums, nodes, self.heavy,
+                   self._pressure, self.work)
         if done < 0:
             what = (f"{reader.header[0]} pairs in contact at once, room for {reader.capacity}" if done == -1 else
                     "contact with a body that is no block, sheet or structure")
@@ -200,6 +209,13 @@ class Section:
         if 2 * reader.header[0] > reader.capacity:
             reader.reserve(4 * reader.capacity)
         return done
+
+    def stock(self) -> Array:
+        """Energy of the blocks now, see `losses.STOCK` [J]."""
+        out = np.zeros(STOCK)
+        stock(self._bodies, _BODY, self.state, self.side, self._edges, self._offset, self._mass, self.water[0],
+              self.physics.g, self.physics.afloat, out)
+        return out
 
     def update_phases(self) -> None:
         """Phases of the blocks after a window, see `phases`."""

@@ -63,6 +63,7 @@ class MassBehindSpring:
     def __init__(self):
         self.state, self.mass, self.cleared_mass, self.power, self.calls = START[2:].copy(), 0.0, 0.0, 0.0, 0
         self.budget = {}
+        self.energy, self.momenta = {}, {}
         self._force, self._edge = K * (START[2] - START[0]), START[:2]
 
     def save(self):

@@ -94,7 +94,7 @@ def record(out: Run, report, now: float, failed: np.ndarray, stored: float) -> N
     else:
         out.cells = list(zip(out.sheet.failure_times, out.sheet.failed_cells, strict=True))
     if out.cells and now < out.cells[0][0] + AFTER:
-        out.kinetic = max(out.kinetic, out.sheet.energy.kinetic)
+        out.kinetic = max(out.kinetic, out.sheet.energy.now.kinetic)
 
 
 def rayleigh_speed(ice: Ice) -> float:

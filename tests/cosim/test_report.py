@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from cosim.features import shares_at_peak
-from cosim.report import content, write_report
+from cosim.report import ENERGY, content, write_report
+from cosim.run import run_scenario
 from cosim.run_data import RunData
+from cosim.scenario import load_scenario
 from coupling.budget import TERMS
+from coupling.energy import STORES
 from coupling.interface import Event
 
 METADATA = {"scenario": "case", "title": "A <case>", "version": "1", "seed": "0", "duration_ns": "200000000",
@@ -19,9 +22,9 @@ METADATA = {"scenario": "case", "title": "A <case>", "version": "1", "seed": "0"
 def run():
     load = np.zeros((4, 3, 3))
     load[:, 0, 0], load[:, 1, 0], load[:, 2, 2] = [1e6, 2e6, 6e6, 0.0], [0.0, 1e6, 2e6, 3e6], 1e6
-    names = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass", "contact_work", "rubble_work",
-             "elastic_energy", "foundation_energy", "kinetic_energy", "damping_loss", "scheme_loss", "fracture_loss",
-             "handed_over_energy")
+    names = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass", "drift_work", "energy_residual",
+             "sheet_elastic", "sheet_foundation", "sheet_kinetic", "damping_loss", "scheme_loss", "fracture_loss",
+             "contact_crushing_loss", "side_push_loss")
     event = Event(120_000_000, "split", (5e6, 0.0, 4e6), 3, (0.0, 0.0, 0.0), "it splits")
     return RunData("run.mcap", METADATA, 50_000_000 * np.arange(1, 5), load, (event,),
                    {n: np.linspace(0.0, 1e5, 4) for n in names}, {"scenario.toml": "[scenario]"})
@@ -70,6 +73,16 @@ def test_the_page_is_self_contained(run, tmp_path):
     assert "http" not in page
     assert "A &lt;case&gt;" in page
     assert "it splits" in page
+
+
+def test_every_term_of_the_energy_has_its_place_in_the_figure():
+    """All terms that a run can have, once each: the stack then ends at the work of the drift."""
+    drawn = [name for _, names in ENERGY.values() for name in names]
+    run = run_scenario(load_scenario("van_vliet_2018_floe_55m_centre",
+                                     ["sheet.nodes=[20, 20]", "scenario.duration='1 s'"]))
+    terms = {n for n in run.ledger if n in STORES or n.endswith("_loss")}
+    assert set(drawn) == terms
+    assert len(drawn) == len(terms)
 
 
 def test_a_run_without_energy_books_has_no_energy_figure(run):

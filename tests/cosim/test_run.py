@@ -10,6 +10,9 @@ import pytest
 
 from cosim.run import run_scenario
 from cosim.scenario import load_scenario
+from coupling.energy import SOURCES, STORES, residual_of
+from coupling.interface import SimulationError
+from coupling.sheet_port import SheetPort
 
 CASE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_55m_centre"
 QUICK = ["sheet.nodes=[20, 20]", "scenario.duration='6 s'", "drift.velocity='0.4 m/s'", "contact.strength='800 kPa'"]
@@ -37,7 +40,59 @@ def test_blocks_load_the_structure(result):
 def test_the_ledger_closes(result):
     assert result.ledger["mass_error"] < 1e-12
     assert result.ledger["momentum_error"] < 1e-9
+    assert result.ledger["angular_momentum_error"] < 1e-9
     assert result.ledger["crushed_mass"] > 0.0
+
+
+def energy_terms(result):
+    """All terms of the balance of a run [J]."""
+    return {n: v for n, v in result.ledger.items() if n in (*STORES, *SOURCES) or n.endswith("_loss")}
+
+
+def check_energy(result, limit):
+    """The balance closes, and not with any large term's sign turned."""
+    terms = energy_terms(result)
+    drift = terms["drift_work"]
+    assert drift > 1e6
+    assert abs(residual_of(terms)) < limit * drift
+    assert result.ledger["energy_residual"] < limit
+    large = [n for n, v in terms.items() if abs(v) > 5.0 * limit * drift]
+    assert len(large) >= 15
+    for name in large:
+        assert abs(residual_of({**terms, name: -terms[name]})) > limit * drift, name
+
+
+def test_the_energy_of_the_whole_system_closes(result):
+    check_energy(result, 1e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["van_vliet_2018_floe_55m_centre", "van_vliet_2018_floe_165m"])
+def test_the_energy_closes_at_full_size(name):
+    full = run_scenario(load_scenario(CASE.parent / name))
+    assert full.ledger["mass_error"] < 1e-12
+    assert full.ledger["angular_momentum_error"] < 1e-9
+    check_energy(full, 1e-4)
+
+
+def test_a_balance_that_does_not_close_stops_the_run(monkeypatch):
+    """Friction of the sheet's edge booked with the other sign."""
+    right = SheetPort.energy.fget
+
+    def wrong(port):
+        books = right(port)
+        return {**books, "contact_friction_loss": -books["contact_friction_loss"]}
+
+    monkeypatch.setattr(SheetPort, "energy", property(wrong))
+    with pytest.raises(SimulationError, match="the energy balance is off"):
+        run_scenario(load_scenario(CASE, [*SMALL, "scenario.duration='12 s'", "rubble.enabled=false"]))
+
+
+@pytest.mark.parametrize("setting", ["sheet.back='free'", "sheet.sides='held'", "contact.model='crushing'",
+                                     "fracture.propagation='dynamic'"])
+def test_the_energy_closes_with_other_settings(setting):
+    run = run_scenario(load_scenario(CASE, [*SMALL, "scenario.duration='12 s'", "rubble.enabled=false", setting]))
+    assert run.ledger["energy_residual"] < 1e-4
 
 
 def test_same_scenario_same_bits(tmp_path):
@@ -66,7 +121,7 @@ def test_other_schemes_break_the_same_ice(scheme):
     assert other.fragments >= 2 and other.ledger["mass_error"] < 1e-12
     assert other.ledger["interface_exchanged"] > 0.0
     assert other.ledger.get("unconverged_windows", 0.0) == 0.0
-    assert other.ledger["interface_loss"] != usual.ledger["interface_loss"]
+    assert other.ledger["interface_lost"] != usual.ledger["interface_lost"]
 
 
 class Ends:

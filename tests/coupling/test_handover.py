@@ -1,10 +1,17 @@
 """A fragment and its blocks: same ice, same place, same motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from coupling.handover import births
+import coupling.rubble_port
+from coupling.handover import births, centre_of, momenta_of
 from coupling.interface import Fragment
+from coupling.rubble_port import RubblePort
+from coupling.structure import plane_slope
+from rubble.layer import Domain
+from rubble.physics import RubblePhysics
 
 D, H = 2.0, 3.0
 
@@ -76,3 +83,37 @@ def test_two_columns_in_a_section_are_one_block_with_both_widths():
     assert len(blocks) == 2
     np.testing.assert_allclose(blocks[0].widths, 2 * D)
     np.testing.assert_allclose(blocks[1].widths, D)
+
+
+def handed_over(ahead, omega=0.05):
+    """What a port says of a fragment whose front stands ``ahead`` of the middle of a slope."""
+    physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, added_mass=0.2)
+    port = RubblePort(plane_slope(np.pi / 4, top=5.0, toe_depth=20.0), physics, pitch=D, origin=1.0,
+                      columns_per_section=1, domain=Domain())
+    f = fragment(omega=omega)
+    return port.add(replace(f, position=f.position + np.array([ahead, 0.0, 0.0])))
+
+
+@pytest.mark.parametrize("ahead", [-5.0, 1.0])
+def test_momentum_linear_and_angular_of_a_fragment_goes_over_with_what_is_trimmed(ahead):
+    moved = handed_over(ahead)
+    assert moved.blocks == 3
+    assert (moved.trimmed > 0.01 * moved.mass) == (ahead > 0.0)
+    assert moved.momentum_error < 1e-12
+    assert moved.angular_momentum_error < 1e-12
+    assert 0.0 < moved.angular_momentum_change < 0.2
+
+
+@pytest.mark.parametrize("wrong", [{"omega": -0.05}, {"centre": np.array([1.0, 0.0])}, {"inertia": 1.0}])
+def test_a_hand_over_that_spoils_the_angular_momentum_is_found(monkeypatch, wrong):
+    monkeypatch.setattr(coupling.rubble_port, "births", lambda f, n: (replace(b, **wrong) for b in births(f, n)))
+    assert handed_over(-5.0).angular_momentum_error > 1e-3
+
+
+def test_angular_momentum_of_a_turning_plate():
+    """Nodes in a row, d apart: sum of m x^2 omega about their centre, and m h^2 / 12 each."""
+    f = fragment(rows=4, columns=1, turn=0.0, omega=0.05)
+    total, scale = momenta_of(f, centre_of(f))
+    x = f.position[:, 0] - np.average(f.position[:, 0], weights=f.mass)
+    assert total[3] == pytest.approx(0.05 * (f.mass * (x**2 + H**2 / 12)).sum(), rel=1e-12)
+    assert scale[3] >= abs(total[3])

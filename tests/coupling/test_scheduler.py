@@ -48,6 +48,7 @@ class StubRubble:
     def __init__(self, trace, loss=0.0, share=0.0):
         self.trace, self.mass, self.cleared_mass, self.power, self.loss = trace, 0.0, 0.0, 0.0, loss
         self.windows, self.force, self.share, self.carried, self.budget = 0, 0.0, share, 0.0, {}
+        self.energy, self.momenta = {}, {}
 
     def save(self):
         return self.mass, self.windows, self.force
@@ -157,4 +158,4 @@ def test_ice_that_gets_lost_stops_the_run():
 
 def test_momentum_that_gets_lost_stops_the_run():
     with pytest.raises(SimulationError, match="momentum of a hand-over"):
-        Ledger(100.0).hand_over(50, 10.0, 0.0, 1e-6)
+        Ledger(100.0).hand_over(50, 10.0, 0.0, 1e-6, 0.0, 0.0)

@@ -100,6 +100,7 @@ class Wall:
     def __init__(self, k):
         self.k, self.mass, self.cleared_mass, self.power, self.pressed = k, 0.0, 0.0, 0.0, 0.0
         self.budget = {}
+        self.energy, self.momenta = {}, {}
 
     def save(self):
         return self.pressed

@@ -37,5 +37,5 @@ def test_power_books():
     assert (first["power_residual"], first["power_error"]) == pytest.approx((20.0, 0.2))
     faint = books.close_window(1.0, -1.0, 0.1)  # edges that barely touch: against the mean of 50.5 W
     assert faint["power_error"] == pytest.approx(2.0 / 50.5)
-    assert faint["interface_loss"] == pytest.approx(0.1 * (20.0 + 2.0))
+    assert faint["interface_lost"] == pytest.approx(0.1 * (20.0 + 2.0))
     assert np.isfinite(list(faint.values())).all()

@@ -8,7 +8,7 @@ from rubble.geometry import clip, contiguous, moments, place, submerged
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.prism import inertia, strips, wetted_edges
-from rubble.water import block_force
+from rubble.water import FORCE_COLUMNS, block_force
 
 PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=3.0)  # thesis values
 RHO_G = PHYSICS.rho_w * PHYSICS.g
@@ -26,7 +26,7 @@ def add_box(layer, x=0.0, z=0.0, length=10.0, height=3.0, width=2.8, density=846
 
 
 def force_on(edges, state, form=0.0, skin=0.0):
-    out = np.zeros(5)
+    out = np.zeros(FORCE_COLUMNS)
     water = np.array([RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0])
     block_force(edges, 0, len(edges), water, 1.0, np.array([state], dtype=float), 0, out, np.empty(6))
     return out[:4]

@@ -1,0 +1,91 @@
+"""Energy of the whole system for an observer at rest: what the drift puts in, what is stored, what is lost.
+
+    drift_work = change of the stores + losses + residual
+
+All terms are changes since the start of the run [J]; each is measured where it happens and none is what others leave.
+The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.stock`. Terms between the two:
+
+* hand-over: what a piece had in the lattice less what its blocks have when they are born (elastic energy is released;
+  a rigid block does not bend, has lost its crushed edge, and brings along the water that moves with it),
+* interface: work that blocks do on the edge they meet less work that the lattice receives on its nodes. It holds the
+  lag of one window and what the edge's spring and mass take up: no store of its own, because the lattice stores the
+  same deformation.
+
+While the sheet is served from a long step its terms stand still, all of them, and are booked when the step is done.
+A loss may be negative: the step of the rubble, its correction of overlap, dry tops and the side push add energy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from coupling.interface import NS, SimulationError
+
+STORES = ("sheet_elastic", "sheet_foundation", "sheet_kinetic", "rubble_kinetic", "rubble_potential")
+SOURCES = ("drift_work", "thrust_work")
+LIMIT = 0.01  #: of the drift's work, or of `EnergyBalance.floor` while that is larger
+
+
+def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[str, float]:
+    """The terms of the balance from the books of both participants [J]; without rubble its terms are 0."""
+    both = {**sheet, **rubble}
+    terms = {name: both.get(name, 0.0) for name in SOURCES + STORES}
+    terms |= {name: value for name, value in both.items() if name.endswith("_loss")}
+    terms["handover_elastic_loss"] = sheet["left_elastic"]
+    terms["handover_potential_loss"] = sheet["left_foundation"] - rubble.get("born_potential", 0.0)
+    terms["handover_kinetic_loss"] = sheet["left_kinetic"] - rubble.get("born_kinetic", 0.0)
+    terms["interface_loss"] = rubble.get("sheet_work", 0.0) - sheet["received_work"]
+    return terms
+
+
+def residual_of(terms: Mapping[str, float]) -> float:
+    """What no term explains [J]."""
+    spent = sum(value for name, value in terms.items() if name in STORES or name.endswith("_loss"))
+    return sum(terms[name] for name in SOURCES) - spent
+
+
+@dataclass
+class EnergyBalance:
+    """The balance of a run, window by window."""
+
+    #: kinetic energy of the floe at the start [J], which it brings along: in the first seconds the drift has done less,
+    #: and to a floe that nothing holds it does nothing at all
+    floor: float = 1.0
+    terms: dict[str, float] = field(default_factory=dict)  #: since the start, at the end of the last window [J]
+    work: float = 0.0  #: largest of the drift so far [J]
+    _start: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def residual(self) -> float:
+        """Of the run so far [J]."""
+        return residual_of(self.terms) if self.terms else 0.0
+
+    @property
+    def relative(self) -> float:
+        """Residual over the work of the drift, or over the floor while that is larger."""
+        return abs(self.residual) / max(self.work, self.floor)
+
+    def open(self, sheet: Mapping[str, float], rubble: Mapping[str, float]) -> None:
+        """Takes stock before the first window; participants without energy books keep none."""
+        if sheet:
+            self._start = terms_of(sheet, rubble)
+            self.terms = dict.fromkeys(self._start, 0.0)
+            self.floor = max(self._start["sheet_kinetic"], self.floor)
+
+    def close(self, t_ns: int, sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[str, float]:
+        """Closes a window; returns the terms with the residual [J]. SimulationError if it is too large."""
+        if not self._start:
+            return {}
+        before, now = self.terms, terms_of(sheet, rubble)
+        self.terms = {name: value - self._start[name] for name, value in now.items()}
+        self.work = max(self.work, abs(self.terms["drift_work"]))
+        if not self.relative <= LIMIT:
+            change = {name: value - before[name] for name, value in self.terms.items()}
+            worst = max(change, key=lambda name: abs(change[name]))
+            raise SimulationError(
+                f"t = {t_ns / NS:.3f} s: the energy balance is off by {self.residual:.4g} J, {self.relative:.2%} of the"
+                f" drift's work (allowed {LIMIT:.0%}), {self.residual - residual_of(before):.4g} J of it in this "
+                f"window; largest change in it: {worst} {change[worst]:+.4g} J. Shorten coupling.window and "
+                "rubble.substep; if that does not help, please report the scenario")
+        return {**self.terms, "energy_residual": self.residual}
