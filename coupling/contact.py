@@ -50,11 +50,6 @@ class OverlapContact:
         self._dy = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
         self.set_edge(np.empty(0, np.int64), *np.zeros((3, 0)))
 
-    @property
-    def level(self) -> float:
-        """Height of the ice's touching face at rest [m]."""
-        return self._z
-
     def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
         """Nodes of the edge and, per node (m,) [m], the front of its ice at t = 0, and the width of its ice.
 

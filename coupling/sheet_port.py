@@ -76,7 +76,7 @@ class SheetPort:
         self._at_structure: list[bool] = []
         self._renew_edge()
         sheet.energy.friction_of = partial(friction_part, structure, law.friction, self.contact.face,
-                                           self.contact.level)
+                                           self.contact.touching_z)
 
     # ---- one window -------------------------------------------------------------------------------------------
 
