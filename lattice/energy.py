@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from lattice.engine import GAMMA, Engine, State, Step
+from lattice.engine import GAMMA, Engine, State, Step, point_displacement
 from lattice.grid import Array, IntArray
 from lattice.springs import spring_energy
 
@@ -87,7 +87,7 @@ class EnergyBooks:
         norms = []
         for b, stage in zip((1.0 - GAMMA, GAMMA), step.stages, strict=True):
             s = stage.state
-            v = np.column_stack((s.u_dot[nodes], s.q_dot[nodes, 0]))
+            v = point_displacement(s.u_dot, s.q_dot, nodes, step.height)
             self.contact += dt * b * float((stage.contact * v).sum())
             self.rubble += dt * b * float(np.vdot(force_u, s.u_dot) + np.vdot(force_q, s.q_dot))
             rate = self.springs(s.u_dot, s.q_dot, live)

@@ -172,6 +172,7 @@ class Cushion:
     """Elastic cushion that comes towards the front edge and pushes it back and down."""
 
     nodes = GRID.edge_nodes("x+")
+    height = np.zeros(len(nodes))
     direction = np.array([-0.7, 0.05, -0.7])
 
     def evaluate(self, t, y):

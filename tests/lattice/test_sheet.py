@@ -19,6 +19,10 @@ class Spring:
     def __init__(self, nodes, rate=0.006, k=2e7):
         self.nodes, self.rate, self.k = np.asarray(nodes), rate, k
 
+    @property
+    def height(self):
+        return np.zeros(len(self.nodes))
+
     def evaluate(self, t, y):
         force, tangent = np.zeros((len(y), 3)), np.zeros((len(y), 3, 3))
         force[:, 2] = self.k * (-self.rate * t**2 - y[:, 2])
