@@ -157,7 +157,7 @@ class ExplicitEngine(Engine):
         """The same for displacements ``at`` (m, 3) of the points of action [m]."""
         force, tangent = contact.evaluate(t, np.ascontiguousarray(at))
         return NodeForces(*np.divmod(contact.nodes, self.grid.ny), force, np.ascontiguousarray(at), tangent,
-                          contact.height)
+                          np.ascontiguousarray(contact.height))
 
     def at(self, nodes: IntArray) -> Array:
         """Displacements of some nodes now, (k, 5)."""
