@@ -259,6 +259,8 @@ class Sheet:
         """Parts a piece that has turned out of the range of small rotations, with what has gone half as far."""
         turned = (self._rotation() > 0.5 * TURNED)[self.grid.cell_nodes]
         cells = np.flatnonzero(self.live_cells & turned.any(axis=1) & ~turned.all(axis=1)).tolist()
+        if not cells:  # a free part that has turned as a whole
+            return
         out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
         for cell in cells:
             self._fail(cell)

@@ -108,3 +108,11 @@ def test_a_hanging_piece_that_has_turned_too_far_leaves():
     assert [sorted(p) for p in left] == [np.flatnonzero(piece.ravel()).tolist()]
     assert sheet.present.sum() == mass - piece.sum()
     assert sheet.energy.handed_over > 0.0
+
+
+def test_a_free_floe_that_has_turned_as_a_whole_tears_nothing():
+    """No cell lies between what has turned and what has not: no failure is told."""
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=np.zeros(GRID.nodes, bool))
+    sheet.state.q[:] = np.column_stack((-0.2 * (GRID.xy[:, 0] - 12.0), np.full(GRID.nodes, 0.2), np.zeros(GRID.nodes)))
+    out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
+    assert out.failure is None and not out.failed and not out.pieces
