@@ -5,6 +5,7 @@ import pytest
 
 from coupling.contact import ContactLaw, CrushingContact, OverlapContact
 from coupling.structure import cone, plane_slope
+from lattice.memory import recall, remember
 
 P, MU, H = 200e3, 0.1, 3.0
 FREEBOARD = 0.477
@@ -159,3 +160,14 @@ def test_an_edge_that_lets_go_and_stays_in_front_keeps_its_height():
     law.settle(5.0, np.array([[-5.0, 0.0, 0.0]]))
     law.set_edge(np.array([3, 7]), np.array([-9.0, 0.0]), np.array([2.0, 0.0]), np.array([2.0, 2.0]))
     np.testing.assert_allclose(law.height, [1.5, 1.25])
+
+
+def test_a_contact_set_back_has_its_damage_and_height_again():
+    law = crushing()
+    law.settle(2.0, np.zeros((1, 3)))
+    saved, force, height = remember(law), law.evaluate(2.5, np.zeros((1, 3)))[0], law.height.copy()
+    law.settle(9.0, np.zeros((1, 3)))
+    assert law.height[0] < height[0] - 0.1
+    recall(saved)
+    np.testing.assert_array_equal(law.height, height)
+    np.testing.assert_array_equal(law.evaluate(2.5, np.zeros((1, 3)))[0], force)
