@@ -9,9 +9,12 @@ and the force is
 with friction mu along the slope against the ice that is pushed past it. The overlap is integrated over the width that
 belongs to a node, at `SAMPLES` points: sampled at nodes alone, coarse meshes see too much of a round structure.
 
-The force acts on the node, at middle thickness, and the overlap counts the deflection of the edge but not its
-rotation. This reading reproduces the thesis: the 55 m floe splits at 3.18 MN and 19.8 s (thesis 3.2 MN). With the
+The thesis's force acts on the node, at middle thickness, and the overlap counts the deflection of the edge but not
+its rotation. This reading reproduces the thesis: the 55 m floe splits at 3.18 MN and 19.8 s (thesis 3.2 MN). With the
 rotation and with the moment of a force that acts at the upper edge it splits at 3.48 MN and 20.9 s.
+
+`CrushingContact` acts where it bears: at the middle of the face of contact, and the overlap counts the way of that
+point, rotation included.
 """
 
 from __future__ import annotations
@@ -56,6 +59,7 @@ class OverlapContact:
         ``y`` is the middle of the node's ice, which is not the node at the sides of the floe.
         """
         self.nodes, self._x, self._width = nodes, x, width
+        self.height = np.zeros(len(nodes))  #: of the points of action above the middle of the ice, (m,) [m]
         self._sample_y = y[:, None] + width[:, None] * self._dy
 
     def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
@@ -66,7 +70,7 @@ class OverlapContact:
         return overlap_of(x, across, z, self._s.z, self._s.r, self._s.revolved)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
-        """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] for y = u_x, u_y, w: an `EdgeContact`."""
+        """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] at displacements y (m, 3): an `EdgeContact`."""
         m = len(self.nodes)
         force, tangent = np.zeros((m, 3)), np.zeros((m, 3, 3))
         L, normal = self.overlap(t, y)
@@ -74,10 +78,7 @@ class OverlapContact:
         if not len(on):
             return force, tangent
         L, normal = L[on], normal[on]
-        sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
-        whole = self._h / sin
-        growing = (L > 0.0) & (L < whole * cos)
-        length = np.where(growing, L / np.maximum(cos, 1e-12), np.where(L > 0.0, whole, 0.0))
+        sin, cos, growing, length = self._length(L, normal)
         pressure, stiffness = self.pressure(L, on)
         per_area = (self._width[on, None] / SAMPLES)[..., None] * self._direction(normal, sin)
         force[on] = (per_area * (pressure * length)[..., None]).sum(axis=1)
@@ -85,6 +86,13 @@ class OverlapContact:
         for k in range(3):  # dL/dy and dL/dw are -dx/dy and -dx/dz of the face
             tangent[on, :, k] = (slope * (normal[..., k] / normal[..., 0])[..., None]).sum(axis=1)
         return force, tangent
+
+    def _length(self, L: Array, normal: Array) -> tuple[Array, Array, np.ndarray, Array]:
+        """sin a, cos a, where the contact is shorter than the face of the ice, and its length [m]; all as L."""
+        sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
+        whole = self._h / sin
+        growing = (L > 0.0) & (L < whole * cos)
+        return sin, cos, growing, np.where(growing, L / np.maximum(cos, 1e-12), np.where(L > 0.0, whole, 0.0))
 
     def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
         """Pressure [Pa] at overlaps L (k, SAMPLES) of the nodes `rows`, and its derivative to L [Pa/m]."""
@@ -107,18 +115,24 @@ class CrushingContact(OverlapContact):
     The pressure grows with the closure L - c of the intact ice behind the crushed depth c, elastically with E / d,
     to the crushing strength of the ice. Beyond it ice is crushed away and c follows: the edge takes the shape of the
     structure, as section 6.3.2 of the thesis recommends. An edge that has let go meets the structure again only where
-    it still reaches it. c is settled at the end of each window.
+    it still reaches it.
+
+    The face of contact reaches from the touching edge, h / 2 from the middle of the ice, down to the depth
+    s = min(L tan a, h) below it, so the force acts h / 2 - s / 2 from the middle. Its moment bends a downward-breaking
+    edge up, against the vertical force. c and the height are settled at the end of each window.
     """
 
     def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
         """As `OverlapContact.set_edge`; nodes that stay in front keep their damage."""
         known: dict[int, Array] = getattr(self, "_known", {})
         super().set_edge(nodes, x, y, width)
-        self._keep(np.array([known.get(n, np.zeros(SAMPLES)) for n in nodes.tolist()]).reshape(-1, SAMPLES))
+        new = np.append(np.zeros(SAMPLES), self.face * 0.5 * self._h)
+        kept = np.array([known.get(n, new) for n in nodes.tolist()]).reshape(-1, SAMPLES + 1)
+        self._keep(kept[:, :-1], kept[:, -1])
 
-    def _keep(self, crushed: Array) -> None:
-        self._crushed: Array = crushed
-        self._known = dict(zip(self.nodes.tolist(), crushed, strict=True))
+    def _keep(self, crushed: Array, height: Array) -> None:
+        self._crushed, self.height = crushed, height
+        self._known = dict(zip(self.nodes.tolist(), np.column_stack((crushed, height)), strict=True))
 
     def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
         elastic = self._law.stiffness * (L - self._crushed[rows])
@@ -126,9 +140,17 @@ class CrushingContact(OverlapContact):
         return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
 
     def settle(self, t: float, y: Array) -> Array:
-        L, _ = self.overlap(t, y)
-        self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness))
+        L, normal = self.overlap(t, y)
+        self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness), self._bearing(L, normal))
         return self._crushed.copy()
+
+    def _bearing(self, L: Array, normal: Array) -> Array:
+        """Height of the middle of the face of contact, (m,) [m]; an edge that has let go keeps its last one."""
+        sin, _, _, length = self._length(L, normal)
+        total = length.sum(axis=1)
+        depth = np.divide((length**2 * sin).sum(axis=1), total, out=self._h - 2.0 * self.face * self.height,
+                          where=total > 0.0)
+        return np.asarray(self.face * 0.5 * (self._h - depth))
 
 
 CONTACTS: dict[str, type[OverlapContact]] = {"overlap": OverlapContact, "crushing": CrushingContact}

@@ -131,7 +131,7 @@ class SheetPort:
             self.sheet.rest_under(*self._forces(rubble))
         except StepError as error:
             raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
-        y = edge_displacement(self.sheet.state, self.contact.nodes)
+        y = edge_displacement(self.sheet.state, self.contact.nodes, self.contact.height)
         overlap, _ = self.contact.overlap(0.0, y)
         self.setback += max(float(overlap.max(initial=0.0)), 0.0)
         self._start = 0.0, self.sheet.state
@@ -159,7 +159,8 @@ class SheetPort:
         n = self.contact.nodes
         if not len(n):
             return
-        self.edge.crush(self.front_column, self.contact.settle(self._t, edge_displacement(s, n)))
+        y = edge_displacement(s, n, self.contact.height)
+        self.edge.crush(self.front_column, self.contact.settle(self._t, y))
         spent = self.edge.spent()
         if len(spent):
             nodes = self.edge.front[spent] * self.sheet.grid.ny + spent

@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numba import njit
 
-from lattice.engine import GAMMA, Engine, State, Step
+from lattice.engine import GAMMA, Engine, State, Step, point_displacement
 from lattice.grid import Array, IntArray
 from lattice.springs import pull_on, spring_energy
 from lattice.stock import Served, Stock, Work
@@ -149,8 +149,8 @@ class EnergyBooks:
         norms = []
         for b, stage in zip((1.0 - GAMMA, GAMMA), step.stages, strict=True):
             s = stage.state
-            v = np.column_stack((s.u_dot[nodes], s.q_dot[nodes, 0]))
-            y = np.column_stack((s.u[nodes], s.q[nodes, 0]))
+            v = point_displacement(s.u_dot, s.q_dot, nodes, step.height)
+            y = point_displacement(s.u, s.q, nodes, step.height)
             self.touch.add(dt * b, stage.contact, v)
             self.rub.add(dt * b, self.friction_of(y, stage.contact), v)
             self.others.add(dt * b, force_u, s.u_dot)

@@ -34,6 +34,7 @@ from lattice.springs import sparse_rows
 from lattice.stiffness import Springs
 
 GAMMA = 1.0 - np.sqrt(0.5)
+LEVER = [1, 2, 0]  #: out-of-plane degrees of freedom that move a point above the node in x, y and z
 CLOSED = 1e-12  #: displacement below which a contact that hardly touches counts as solved [m]
 
 
@@ -62,11 +63,12 @@ class EdgeContact(Protocol):
     """Contact law of edge nodes with something outside the lattice."""
 
     nodes: IntArray  #: (m,) nodes that may touch
+    height: Array  #: (m,) of the points of action above the middle of the sheet, constant within a window [m]
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
-        """Force on each node and its derivative.
+        """Force at the point of action of each node and its derivative.
 
-        ``y`` (m, 3) holds u_x, u_y, w [m]; returns the force (m, 3) [N] and the tangent (m, 3, 3) [N/m].
+        ``y`` (m, 3) is the `point_displacement` [m]; returns the force (m, 3) [N] and the tangent (m, 3, 3) [N/m].
         """
         ...
 
@@ -75,9 +77,21 @@ class NoContact:
     """An edge that touches nothing."""
 
     nodes = np.empty(0, np.int64)
+    height = np.empty(0)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         return np.empty((0, 3)), np.empty((0, 3, 3))
+
+
+def point_displacement(u: Array, q: Array, nodes: IntArray, height: Array) -> Array:
+    """u_x + z phi_x, u_y + z phi_y, w of the points of nodes at height z above the middle, (m, 3); also of velocities.
+
+    A force F at such a point does work on these, so it acts on the node as F with the moments z F_x on phi_x and
+    z F_y on phi_y.
+    """
+    y = np.column_stack((u[nodes], q[nodes, 0]))
+    y[:, :2] += height[:, None] * q[nodes, 1:]
+    return y
 
 
 @dataclass(frozen=True)
@@ -97,6 +111,7 @@ class Step:
     dt: float
     start: State
     stages: tuple[Stage, Stage]
+    height: Array  #: (m,) at which the contact acts [m]
 
     @property
     def state(self) -> State:
@@ -217,7 +232,7 @@ class Engine:
         back, s1 = (1.0 - GAMMA) * dt, first.state
         start = State(state.u + back * s1.u_dot, state.q + back * s1.q_dot,
                       state.u_dot + back * first.u_acc, state.q_dot + back * first.q_acc)
-        return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)))
+        return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)), contact.height)
 
     def _euler(self, t: float, s: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Stage:
         """Backward Euler over a: (M/a^2 + C/a + K) x = f + M (x_0/a^2 + v_0/a) + C x_0 / a."""
@@ -228,22 +243,20 @@ class Engine:
             b_u = b_u + self.alpha / a * self._in.spring_force(s.u.ravel())
             b_q = b_q + self.alpha / a * self._out.spring_force(s.q.ravel())
         u, q = self._in.solve(b_u).reshape(-1, 2), self._out.solve(b_q).reshape(-1, 3)
-        f = self._contact_force(t, np.column_stack((u[n], q[n, 0])), contact) if len(n) else np.zeros((0, 3))
+        z = contact.height
+        f = self._contact_force(t, point_displacement(u, q, n, z), contact) if len(n) else np.zeros((0, 3))
         if f.any():
             u = u + self._in.response(_dof_u(n), f[:, :2].ravel()).reshape(-1, 2)
-            q = q + self._out.response(_dof_w(n), f[:, 2]).reshape(-1, 3)
+            q = q + self._out.response(*_out_of_plane(n, z, f)).reshape(-1, 3)
         u_dot, q_dot = (u - s.u) / a, (q - s.q) / a
         return Stage(State(u, q, u_dot, q_dot), (u_dot - s.u_dot) / a, (q_dot - s.q_dot) / a, f)
 
     def _contact_force(self, t: float, free: Array, contact: EdgeContact) -> Array:
-        """Newton iteration on the edge: y = y_free + G f(y) with G the compliance of the edge nodes."""
+        """Newton iteration on the edge: y = y_free + G f(y) with G the compliance of the points of action."""
         f, tangent = contact.evaluate(t, free)
         if not f.any() and not tangent.any():
             return f
-        m, n = len(free), contact.nodes
-        G = np.zeros((m, 3, m, 3))
-        G[:, :2, :, :2] = self._in.compliance(_dof_u(n)).reshape(m, 2, m, 2)
-        G[:, 2, :, 2] = self._out.compliance(_dof_w(n))
+        m, G = len(free), self._compliance(contact.nodes, contact.height)
         y, residual = free.copy(), -np.einsum("iajb,jb->ia", G, f)
         for _ in range(100):
             J = np.eye(3 * m) - np.einsum("iajb,jbc->iajc", G, tangent).reshape(3 * m, 3 * m)
@@ -260,9 +273,33 @@ class Engine:
         raise StepError(f"contact of the sheet's edge found no equilibrium at t = {t:.4f} s: use a shorter window")
 
 
+    def _compliance(self, n: IntArray, z: Array) -> Array:
+        """Of the points at height z (m,) of nodes n (m,), (m, 3, m, 3) [m/N]: T C T^T with y = T x, of both systems."""
+        m = len(n)
+        G = np.zeros((m, 3, m, 3))
+        G[:, :2, :, :2] = self._in.compliance(_dof_u(n)).reshape(m, 2, m, 2)
+        if not z.any():
+            G[:, 2, :, 2] = self._out.compliance(_dof_w(n))
+            return G
+        C = self._out.compliance(_dof_q(n)).reshape(m, 3, m, 3)[:, LEVER][:, :, :, LEVER]
+        arm = np.column_stack((z, z, np.ones(m)))
+        return G + arm[:, :, None, None] * C * arm
+
+
+def _out_of_plane(n: IntArray, z: Array, f: Array) -> tuple[IntArray, Array]:
+    """Out-of-plane degrees of freedom on which forces (m, 3) at height z act, and what acts on them [N], [N m]."""
+    if not z.any():
+        return _dof_w(n), f[:, 2]
+    return _dof_q(n), np.column_stack((f[:, 2], z * f[:, 0], z * f[:, 1])).ravel()
+
+
 def _dof_u(nodes: IntArray) -> IntArray:
     return (2 * nodes[:, None] + np.arange(2)).ravel()
 
 
 def _dof_w(nodes: IntArray) -> IntArray:
     return 3 * nodes
+
+
+def _dof_q(nodes: IntArray) -> IntArray:
+    return (3 * nodes[:, None] + np.arange(3)).ravel()

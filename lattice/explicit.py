@@ -149,12 +149,15 @@ class ExplicitEngine(Engine):
 
     def contact(self, t: float, contact: EdgeContact) -> NodeForces:
         """Contact force and tangent at time t for the displacements now."""
-        return self.contact_at(t, contact, self.at(contact.nodes)[:, :3])
+        now = self.at(contact.nodes)
+        now[:, :2] += contact.height[:, None] * now[:, 3:]
+        return self.contact_at(t, contact, now[:, :3])
 
     def contact_at(self, t: float, contact: EdgeContact, at: Array) -> NodeForces:
-        """The same for displacements ``at`` (m, 3) [m]."""
+        """The same for displacements ``at`` (m, 3) of the points of action [m]."""
         force, tangent = contact.evaluate(t, np.ascontiguousarray(at))
-        return NodeForces(*np.divmod(contact.nodes, self.grid.ny), force, np.ascontiguousarray(at), tangent)
+        return NodeForces(*np.divmod(contact.nodes, self.grid.ny), force, np.ascontiguousarray(at), tangent,
+                          np.ascontiguousarray(contact.height))
 
     def at(self, nodes: IntArray) -> Array:
         """Displacements of some nodes now, (k, 5)."""
@@ -167,8 +170,8 @@ class ExplicitEngine(Engine):
         total, books = np.zeros((m, 3)), np.zeros(3)
         made, count = march(steps, 1 if lively else steps, self.y, self.v, self._scratch, self._cells, self._kick,
                             self._mass, self._limit, self._spring, self._pace, self._crack, self._rows, load.row,
-                            load.column, load.force, contact.row, contact.column, contact.at, contact.force,
-                            contact.tangent, np.zeros((m, 5)), total, books)
+                            load.column, load.force, contact.row, contact.column, contact.height, contact.at,
+                            contact.force, contact.tangent, np.zeros((m, 5)), total, books)
         loss = books[2] * (1 if lively else made)
         return Marched(made, count > 0, total / made, self.dt * books[0], self.dt * books[1], loss)
 

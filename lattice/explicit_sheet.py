@@ -95,7 +95,7 @@ class ExplicitSheet(Sheet):
     def _begin(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact) -> None:
         e = self.engine
         e.set_cells(self.live_cells, self._limits(), self.present)
-        touch = e.contact_at(t, contact, edge_displacement(self.state, contact.nodes))
+        touch = e.contact_at(t, contact, edge_displacement(self.state, contact.nodes, contact.height))
         load = self._loads(force_u, force_q)
         e.start(self.state, self.present, (load, touch))
         self._book_half(-0.5, load, touch)

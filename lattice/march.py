@@ -20,10 +20,13 @@ class NodeForces:
     force: Array  #: (k, 5) or, for a contact, (k, 3) [N], [N m]
     at: Array = field(default_factory=lambda: np.empty((0, 3)))  #: (k, 3) displacement that has this force [m]
     tangent: Array = field(default_factory=lambda: np.empty((0, 3, 3)))  #: (k, 3, 3) [N/m]
+    height: Array = field(default_factory=lambda: np.empty(0))  #: (k,) of a contact above the middle [m]
 
     def padded(self) -> Array:
-        """Forces on all five degrees of freedom, (k, 5)."""
-        return np.ascontiguousarray(np.pad(self.force, ((0, 0), (0, 5 - self.force.shape[1]))))
+        """Forces on all five degrees of freedom, (k, 5): those of a contact with their moments about the middle."""
+        if self.force.shape[1] == 5:
+            return np.ascontiguousarray(self.force)
+        return np.hstack((self.force, self.height[:, None] * self.force[:, :2]))
 
 
 @dataclass(frozen=True)
@@ -38,15 +41,20 @@ class Marched:
     loss: float  #: taken by hydrodynamic and material damping [J]
 
 
-@njit(f"void({I1}, {I1}, {A2}, {A2}, {A3}, {A2}, {A3}, {A3}, float64)", cache=True, nogil=True)
-def contact_force(row, column, at, force, tangent, now, y, v, alpha):
-    """Contact on u_x, u_y, w of its nodes, linear about the displacement ``at``: into ``now`` (m, 5) [N]."""
+@njit(f"void({I1}, {I1}, {A1}, {A2}, {A2}, {A3}, {A2}, {A3}, {A3}, float64)", cache=True, nogil=True)
+def contact_force(row, column, height, at, force, tangent, now, y, v, alpha):
+    """Contact at ``height`` above its nodes, linear about the displacement ``at``: into ``now`` (m, 5) [N], [N m]."""
     for k in range(len(row)):
         i, j = row[k], column[k]
-        for a in range(3):
-            now[k, a] = force[k, a]
-            for b in range(3):
-                now[k, a] += tangent[k, a, b] * (y[b, i, j] - alpha * v[b, i, j] - at[k, b])
+        now[k, :3] = force[k]
+        for b in range(3):
+            moved = y[b, i, j] - alpha * v[b, i, j] - at[k, b]
+            if b < 2:
+                moved += height[k] * (y[b + 3, i, j] - alpha * v[b + 3, i, j])
+            for a in range(3):
+                now[k, a] += tangent[k, a, b] * moved
+        for a in range(2):
+            now[k, a + 3] = height[k] * now[k, a]
 
 
 @njit(f"void({A3}, {A3}, {A3}, {A3}, {A2}, {A3}, {A1}, {A1}, {A1})", cache=True, nogil=True)
@@ -85,23 +93,24 @@ def power(row, column, force, v):
 
 
 MARCH = (f"UniTuple(int64, 2)(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A3}, {A2}, {A1}, "
-         f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A2}, {A2}, {A3}, {A2}, {A2}, {A1})")
+         f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A1}, {A2}, {A2}, {A3}, {A2}, {A2}, {A1})")
 
 
 @njit(MARCH, cache=True, nogil=True)
 def march(steps, stride, y, v, scratch, intact, kick, mass, limit, spring, pace, crack, rows, row, column, force,
-          touch_row, touch_column, at, touch, tangent, now, total, books):
+          touch_row, touch_column, height, at, touch, tangent, now, total, books):
     """Up to ``steps`` sub-steps; stops after the first one at whose end a cell is overloaded.
 
-    ``force`` (k, 5) on the nodes (row, column) is constant; the contact is linear about ``at`` (m, 3) with the force
-    ``touch`` (m, 3) and its ``tangent`` (m, 3, 3). Its forces, sub-step by sub-step, are added up in ``total`` (m, 3).
+    ``force`` (k, 5) on the nodes (row, column) is constant; the contact, at ``height`` (m,), is linear about ``at``
+    (m, 3) with the force ``touch`` (m, 3) and its ``tangent`` (m, 3, 3). Its forces, sub-step by sub-step, are added up
+    in ``total`` (m, 3).
     Returns the sub-steps made and the number of overloaded faces. ``books`` (3,) takes the sums over the sub-steps of
     the power of the contact and of the forces [W], and of the work of damping [J] in every ``stride``-th
     one (which costs as much as a sub-step; ``scratch`` (3, 5, n_x+1, n_y+1) is for that), all exact for leapfrog.
     """
     alpha, go = pace[0], pace[1]
     for step in range(steps):
-        contact_force(touch_row, touch_column, at, touch, tangent, now, y, v, alpha)
+        contact_force(touch_row, touch_column, height, at, touch, tangent, now, y, v, alpha)
         total += now[:, :3]
         if step % stride == 0:
             damped(v, scratch[0], scratch[1], scratch[2], intact, kick, spring, pace, rows)

@@ -19,7 +19,7 @@ import numpy as np
 
 from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
 from lattice.energy import EnergyBooks
-from lattice.engine import EdgeContact, Engine, NoContact, State, Step, StepError
+from lattice.engine import EdgeContact, Engine, NoContact, State, Step, StepError, point_displacement
 from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
@@ -49,7 +49,7 @@ class Outcome:
 
 @dataclass
 class LongStep:
-    """A step over several windows, served window by window."""
+    """A step over several windows, served window by window; its contact acts at one height throughout."""
 
     step: Step
     windows: int
@@ -150,11 +150,12 @@ class Sheet:
         if utilisation.max() >= 1.0:
             self._drop_long_step()
             return None
-        force = contact.evaluate(t + self.dt, edge_displacement(state, contact.nodes))[0]
+        end = edge_displacement(state, contact.nodes, plan.step.height)
+        force = contact.evaluate(t + self.dt, end)[0]
         out = Outcome(0.5 * (plan.contact + force), force, parts=self.parts)
-        before, after = edge_displacement(self.state, contact.nodes), edge_displacement(state, contact.nodes)
-        plan.done.touch.add(self.dt, out.contact_mean, (after - before) / self.dt)
-        plan.done.rub.add(self.dt, self.energy.friction_of(after, out.contact_mean), (after - before) / self.dt)
+        way = end - edge_displacement(self.state, contact.nodes, plan.step.height)
+        plan.done.touch.add(self.dt, out.contact_mean, way / self.dt)
+        plan.done.rub.add(self.dt, self.energy.friction_of(end, out.contact_mean), way / self.dt)
         mean = of_cubic(self.state, state, self.dt)
         out.reaction = between(self.support, self.state, state, self.dt, mean, self.live_cells, self.present)
         self.state, self.utilisation = state, utilisation
@@ -172,7 +173,7 @@ class Sheet:
         if step.error > LONG_STEP_ERROR * self.ice.h:
             self._wait, self._windows = self._windows, max(self._windows // 2, 2)
             return False
-        start = contact.evaluate(t, edge_displacement(self.state, contact.nodes))[0]
+        start = contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
         self._long = LongStep(step, self._windows, contact=start)
         self._windows = min(2 * self._windows, self._longest)
         return True
@@ -225,7 +226,7 @@ class Sheet:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if self._utilisation(step.at(middle)).max() >= 1.0 else (middle, high)
         time = t + high * self.dt
-        return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes))[0]
+        return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes, step.height))[0]
 
     def _utilisation(self, state: State) -> Array:
         strains = cell_strains(self.grid.cell_nodes, self.grid.d, state.u, state.q)
@@ -267,7 +268,9 @@ class Sheet:
         """Parts a piece that has turned out of the range of small rotations, with what has gone half as far."""
         turned = (self._rotation() > 0.5 * TURNED)[self.grid.cell_nodes]
         cells = np.flatnonzero(self.live_cells & turned.any(axis=1) & ~turned.all(axis=1)).tolist()
-        out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes))[0]
+        if not cells:  # a free part that has turned as a whole
+            return
+        out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
         for cell in cells:
             self._fail(cell)
         out.failed += cells
@@ -295,6 +298,6 @@ class Sheet:
         return front_rows(self.grid, self.present)
 
 
-def edge_displacement(state: State, nodes: IntArray) -> Array:
-    """u_x, u_y, w of edge nodes, as an `EdgeContact` takes them, (m, 3) [m]."""
-    return np.column_stack((state.u[nodes], state.q[nodes, 0]))
+def edge_displacement(state: State, nodes: IntArray, height: Array) -> Array:
+    """Displacement of the points of edge nodes at these heights (m,), as an `EdgeContact` takes them, (m, 3) [m]."""
+    return point_displacement(state.u, state.q, nodes, height)

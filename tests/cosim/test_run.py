@@ -10,6 +10,7 @@ import pytest
 
 from cosim.run import run_scenario
 from cosim.scenario import load_scenario
+from coupling.contact import CONTACTS, CrushingContact
 from coupling.energy import SOURCES, STORES, residual_of
 from coupling.interface import SimulationError
 from coupling.sheet_port import SheetPort
@@ -122,6 +123,26 @@ def test_other_schemes_break_the_same_ice(scheme):
     assert other.ledger["interface_exchanged"] > 0.0
     assert other.ledger.get("unconverged_windows", 0.0) == 0.0
     assert other.ledger["interface_lost"] != usual.ledger["interface_lost"]
+
+
+@pytest.mark.parametrize("propagation", ["quasi-static", "dynamic"])
+def test_a_crushing_edge_is_bent_by_its_contact(propagation, monkeypatch):
+    """The force above the middle of the ice bends the edge up: the first cell fails at a higher load."""
+    options = ["contact.model=crushing", "contact.strength='4 MPa'", "rubble.enabled=false",
+               "scenario.duration='1.6 s'", f"fracture.propagation='{propagation}'"]
+    true = quick(*options)
+    monkeypatch.setitem(CONTACTS, "crushing", AtMiddle)
+    middle = quick(*options)
+    assert 1.05 < true.events[0].force[0] / middle.events[0].force[0] < 1.4
+    for ledger in (true.ledger, middle.ledger):
+        assert ledger["sheet_energy_residual"] < 1e-5
+
+
+class AtMiddle(CrushingContact):
+    """A crushing contact as if the force acted at middle thickness."""
+
+    def _keep(self, crushed, height):
+        super()._keep(crushed, np.zeros_like(height))
 
 
 class Ends:

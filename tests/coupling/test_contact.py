@@ -5,6 +5,7 @@ import pytest
 
 from coupling.contact import ContactLaw, CrushingContact, OverlapContact
 from coupling.structure import cone, plane_slope
+from lattice.memory import recall, remember
 
 P, MU, H = 200e3, 0.1, 3.0
 FREEBOARD = 0.477
@@ -120,3 +121,53 @@ def test_ice_that_hangs_over_the_side_of_the_cone_is_pressed_where_it_touches_on
     assert np.isfinite(force).all()
     assert np.isfinite(tangent).all()
     assert 0.0 < -force[0, 2] < P * H * np.sqrt(2) * 2.0
+
+
+def test_the_thesis_contact_acts_at_middle_thickness():
+    law = contact(plane_slope(np.pi / 4))
+    law.settle(5.0, np.zeros((1, 3)))
+    np.testing.assert_array_equal(law.height, [0.0])
+
+
+@pytest.mark.parametrize(("breaking", "face"), [("downward", 1.0), ("upward", -1.0)])
+@pytest.mark.parametrize("degrees", [30.0, 45.0, 60.0])
+def test_a_crushing_contact_acts_at_the_middle_of_its_face(degrees, breaking, face):
+    """z = h/2 - min(L tan a, h)/2 on the side of the edge that touches; at the edge before it is pressed."""
+    structure, tan = plane_slope(np.radians(degrees), breaking=breaking), np.tan(np.radians(degrees))
+    law = CrushingContact(structure, ContactLaw(4e6, MU, 3e9), 0.1, H, FREEBOARD)
+    z = FREEBOARD if face > 0 else FREEBOARD - H
+    law.set_edge(np.array([7]), np.array([float(structure.face_x(0.0, z))]), np.zeros(1), np.array([2.0]))
+    assert law.height[0] == pytest.approx(face * 1.5, rel=1e-12)
+    for t in (2.0, 10.0, 100.0):
+        law.settle(t, np.zeros((1, 3)))
+        assert law.height[0] == pytest.approx(face * 0.5 * (H - min(0.1 * t * tan, H)), abs=1e-9)
+
+
+def test_on_a_round_structure_the_height_is_the_mean_over_the_face():
+    """A node beside the axis of a cone touches along part of its width: each point counts by its contact length."""
+    law = CrushingContact(cone(np.pi / 4, 15.0), ContactLaw(4e6, MU, 3e9), 0.1, H, FREEBOARD)
+    front = float(cone(np.pi / 4, 15.0).face_x(6.0, FREEBOARD))
+    law.set_edge(np.array([7]), np.array([front]), np.array([6.0]), np.array([2.8]))
+    L, _ = law.overlap(3.0, np.zeros((1, 3)))
+    assert L.min() == 0.0 < L.max()
+    law.settle(3.0, np.zeros((1, 3)))
+    assert law.height[0] == pytest.approx(0.5 * H - 0.5 * (L**2).sum() / L.sum(), rel=1e-9)
+
+
+def test_an_edge_that_lets_go_and_stays_in_front_keeps_its_height():
+    law = crushing()
+    law.settle(5.0, np.zeros((1, 3)))
+    law.settle(5.0, np.array([[-5.0, 0.0, 0.0]]))
+    law.set_edge(np.array([3, 7]), np.array([-9.0, 0.0]), np.array([2.0, 0.0]), np.array([2.0, 2.0]))
+    np.testing.assert_allclose(law.height, [1.5, 1.25])
+
+
+def test_a_contact_set_back_has_its_damage_and_height_again():
+    law = crushing()
+    law.settle(2.0, np.zeros((1, 3)))
+    saved, force, height = remember(law), law.evaluate(2.5, np.zeros((1, 3)))[0], law.height.copy()
+    law.settle(9.0, np.zeros((1, 3)))
+    assert law.height[0] < height[0] - 0.1
+    recall(saved)
+    np.testing.assert_array_equal(law.height, height)
+    np.testing.assert_array_equal(law.evaluate(2.5, np.zeros((1, 3)))[0], force)

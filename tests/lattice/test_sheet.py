@@ -19,6 +19,10 @@ class Spring:
     def __init__(self, nodes, rate=0.006, k=2e7):
         self.nodes, self.rate, self.k = np.asarray(nodes), rate, k
 
+    @property
+    def height(self):
+        return np.zeros(len(self.nodes))
+
     def evaluate(self, t, y):
         force, tangent = np.zeros((len(y), 3)), np.zeros((len(y), 3, 3))
         force[:, 2] = self.k * (-self.rate * t**2 - y[:, 2])
@@ -104,3 +108,11 @@ def test_a_hanging_piece_that_has_turned_too_far_leaves():
     assert [sorted(p) for p in left] == [np.flatnonzero(piece.ravel()).tolist()]
     assert sheet.present.sum() == mass - piece.sum()
     assert sheet.energy.handed_over > 0.0
+
+
+def test_a_free_floe_that_has_turned_as_a_whole_tears_nothing():
+    """No cell lies between what has turned and what has not: no failure is told."""
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=np.zeros(GRID.nodes, bool))
+    sheet.state.q[:] = np.column_stack((-0.2 * (GRID.xy[:, 0] - 12.0), np.full(GRID.nodes, 0.2), np.zeros(GRID.nodes)))
+    out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
+    assert out.failure is None and not out.failed and not out.pieces

@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cosim.run import run_scenario
 from cosim.scenario import load_scenario
+from coupling.contact import CONTACTS, CrushingContact
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -63,3 +65,28 @@ def test_the_corner_of_the_small_floe_breaks_off():
     assert failure.force[0] == pytest.approx(3.3e6, rel=0.05)
     assert failure.force[2] == pytest.approx(2.8e6, rel=0.05)
     assert failure.t_ns / 1e9 == pytest.approx(20.7, rel=0.05)
+
+
+class AtMiddle(CrushingContact):
+    """A crushing contact as if the force acted at middle thickness."""
+
+    def _keep(self, crushed, height):
+        super()._keep(crushed, np.zeros_like(height))
+
+
+@pytest.mark.slow
+def test_the_height_of_a_crushing_contact_raises_the_load_of_the_large_floe(monkeypatch):
+    """4 MPa: 5.64 / 4.63 MN at 5.2 s at its true height, 4.57 / 3.75 MN at 4.5 s at middle thickness.
+
+    80 x 80 nodes: 5.54 and 4.65 MN (Fx). Equilibria of the cracked floe under the same distribution of forces, scaled
+    until a cell in intact ice fails, give 4.6 MN for z = 0, 5.1 for 0.6 m, 5.5 for 1.25 m and 5.6 for 1.38 m, the
+    height of the force at failure.
+    """
+    options = ["contact.model=crushing", "contact.strength='4 MPa'"]
+    true = first(breaking("floe_165m", 6, *options), "circumferential")
+    monkeypatch.setitem(CONTACTS, "crushing", AtMiddle)
+    middle = first(breaking("floe_165m", 6, *options), "circumferential")
+    for event, fx, fz, time in ((true, 5.64e6, 4.63e6, 5.20), (middle, 4.57e6, 3.75e6, 4.54)):
+        assert event.force[0] == pytest.approx(fx, rel=0.02)
+        assert event.force[2] == pytest.approx(fz, rel=0.02)
+        assert event.t_ns / 1e9 == pytest.approx(time, rel=0.02)

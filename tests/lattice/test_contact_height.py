@@ -1,0 +1,122 @@
+"""A contact that acts above the middle of the sheet: statics in closed form, reciprocity, work and energy."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lattice.energy import EnergyBooks
+from lattice.engine import Engine, State, point_displacement
+from lattice.grid import Grid
+from lattice.ice import Ice
+from lattice.sheet import Sheet, edge_displacement
+from lattice.stiffness import hrennikoff
+
+GRID = Grid(9, 7, 3.0)
+ICE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0, sigma_t=1e15, sigma_f=1e15, sigma_c=5e15)
+
+
+class Push:
+    """Constant forces (m, 3) on nodes at a height."""
+
+    def __init__(self, nodes, force, height):
+        self.nodes, self.force, self.height = nodes, force, np.full(len(nodes), height)
+
+    def evaluate(self, t, y):
+        return self.force, np.zeros((len(y), 3, 3))
+
+
+class Cushion:
+    """Elastic cushion that comes towards the front edge and pushes its upper or lower rim back and down."""
+
+    direction = np.array([-0.7, 0.1, -0.7])
+
+    def __init__(self, height):
+        self.nodes = GRID.edge_nodes("x+")
+        self.height = np.full(GRID.ny, height)
+
+    def evaluate(self, t, y):
+        depth, k = 0.05 * t + y[:, 0] + y[:, 2], 2e6
+        tangent = np.zeros((len(y), 3, 3))
+        tangent[:, :, 0] = tangent[:, :, 2] = k * self.direction
+        return k * depth[:, None] * self.direction, tangent
+
+
+def back_held(grid):
+    held = np.zeros(grid.nodes, bool)
+    held[grid.edge_nodes("x-")] = True
+    return held
+
+
+def no_force(grid):
+    return np.zeros((grid.nodes, 2)), np.zeros((grid.nodes, 3))
+
+
+@pytest.mark.parametrize("z", [0.4, -0.4])
+def test_the_end_of_a_floating_beam_turns_under_the_moment_of_a_push(z):
+    """Hetenyi (1946), semi-infinite beam with the end moment M: w = 2 M b^2 / k (cos bx - sin bx) exp(-bx),
+    b^4 = k / 4EI. A push F back at height z lifts the end by 2 z F b^2 / k (shear of the plate: 0.1 %)."""
+    grid, ice, F = Grid(201, 3, 1.0), Ice(E=8.7e9, nu=0.0, h=1.0, rho_i=846.0, rho_w=1006.0), 1e5
+    push = Push(grid.edge_nodes("x+"), np.array([[-0.25 * F, 0, 0], [-0.5 * F, 0, 0], [-0.25 * F, 0, 0]]), z)
+    e, s = Engine(grid, ice, hrennikoff(ice), held_in_plane=back_held(grid)), State.rest(grid.nodes)
+    for k in range(3):  # steps so long that the end of each is at rest
+        s = e.step(1e5 * k, 1e5, s, *no_force(grid), push).state
+    b, x, M = (ice.k_f / (4.0 * ice.D)) ** 0.25, 200.0 - np.arange(grid.nx) * grid.d, z * F / 2.0
+    w = 2.0 * M * b**2 / ice.k_f * (np.cos(b * x) - np.sin(b * x)) * np.exp(-b * x)
+    np.testing.assert_allclose(s.q[1::3, 0], w, rtol=0, atol=5e-3 * abs(w[-1]))
+    assert s.q[-2, 1] == pytest.approx(-4.0 * M * b**3 / ice.k_f, rel=5e-3)
+    assert s.u[-2, 0] == pytest.approx(-F * 200.0 / (ice.E * 2.0), rel=1e-2)
+
+
+@pytest.mark.parametrize("height", [0.0, 1.3, -1.2])
+def test_what_a_point_feels_and_how_it_moves_belong_together(height):
+    """The compliance that the contact is solved with gives the displacement of its points, and is symmetric."""
+    e = Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=back_held(GRID), alpha=1e-3)
+    nodes = np.concatenate((GRID.edge_nodes("x+"), GRID.edge_nodes("y+")[3:5]))
+    force = np.random.default_rng(1).normal(size=(len(nodes), 3))
+    push = Push(nodes, force, height)
+    stage = e.step(0.0, 0.05, State.rest(GRID.nodes), *no_force(GRID), push).stages[0].state
+    G = e._compliance(nodes, push.height)
+    y = point_displacement(stage.u, stage.q, nodes, push.height)
+    np.testing.assert_allclose(np.einsum("iajb,jb->ia", G, force), y, rtol=0, atol=1e-9 * np.abs(y).max())
+    np.testing.assert_allclose(G, G.transpose(2, 3, 0, 1), rtol=0, atol=1e-9 * np.abs(G).max())
+
+
+def cushioned(height, long_step=1):
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.025, held=back_held(GRID), damping=2000.0, alpha=1e-3,
+                  long_step=long_step)
+    for k in range(80):
+        sheet.advance(0.025 * k, *no_force(GRID), Cushion(height), lambda nodes: None)
+    return sheet
+
+
+@pytest.mark.parametrize(("height", "long_step"), [(1.3, 1), (-1.3, 1), (1.3, 4)])
+def test_energy_closes_with_a_contact_above_the_middle(height, long_step):
+    e = cushioned(height, long_step).energy
+    assert e.contact > 0.0
+    assert abs(e.residual) < (1e-9 if long_step == 1 else 1e-3) * e.contact
+
+
+def test_books_with_the_wrong_sign_of_the_height_do_not_close():
+    e = Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=back_held(GRID))
+    here, live, contact = np.ones(GRID.nodes, bool), np.ones(GRID.cells, bool), Cushion(1.3)
+    right, wrong, s = EnergyBooks(e), EnergyBooks(e), State.rest(GRID.nodes)
+    for k in range(40):
+        step = e.step(0.025 * k, 0.025, s, *no_force(GRID), contact)
+        for books, z in ((right, step.height), (wrong, -step.height)):
+            books.book_step(replace(step, height=z), *no_force(GRID), contact.nodes, live, here)
+        s = step.state
+    assert abs(right.residual) < 1e-9 * right.contact
+    assert abs(wrong.residual) > 1e-2 * right.contact
+
+
+def test_work_is_the_force_times_the_way_of_its_point():
+    """Exactly so for constant forces: also where they turn the edge more than they push it."""
+    push = Push(GRID.edge_nodes("x+"), np.tile([-1e5, 3e4, -2e4], (GRID.ny, 1)), 1.4)
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=back_held(GRID))
+    for k in range(30):
+        sheet.advance(0.05 * k, *no_force(GRID), push, lambda nodes: None)
+    work = (push.force * edge_displacement(sheet.state, push.nodes, push.height)).sum()
+    below = (push.force * edge_displacement(sheet.state, push.nodes, -push.height)).sum()
+    assert sheet.energy.contact == pytest.approx(work, rel=1e-10)
+    assert abs(work - below) > 0.1 * abs(work)
