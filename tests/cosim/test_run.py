@@ -135,7 +135,7 @@ def test_a_crushing_edge_is_bent_by_its_contact(propagation, monkeypatch):
     middle = quick(*options)
     assert 1.05 < true.events[0].force[0] / middle.events[0].force[0] < 1.4
     for ledger in (true.ledger, middle.ledger):
-        assert ledger["sheet_energy_residual"] < 1e-5
+        assert ledger["sheet_energy_residual"] < (1e-5 if propagation == "quasi-static" else 5e-4)
 
 
 class AtMiddle(CrushingContact):
