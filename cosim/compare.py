@@ -33,7 +33,10 @@ def ratio(simulated: float | None, value: Range | None) -> float | None:
 
 def compare(run: RunData, reference: Reference) -> list[Row]:
     """Every feature of the reference, taken from the run."""
-    return [Row(f, QUANTITIES[f.quantity](run, **f.arguments)) for f in reference.features]
+    def value(f: Feature) -> float | None:
+        return QUANTITIES[f.quantity](run if f.over is None else run.averaged(f.over), **f.arguments)
+
+    return [Row(f, value(f)) for f in reference.features]
 
 
 def reference_of(run: RunData, path: str | Path | None) -> tuple[str, Reference]:
@@ -62,7 +65,7 @@ def _json_row(row: Row) -> dict[str, Any]:
         "ratio": ratio(row.simulated, f.measured), "source": f.source, "unit": f.unit,
         "measured_range": list(f.measured) if f.measured and f.measured[0] != f.measured[1] else None,
         "thesis": _middle(f.thesis), "thesis_ratio": ratio(row.simulated, f.thesis),
-        "quantity": f.quantity, "arguments": f.arguments,
+        "quantity": f.quantity, "arguments": f.arguments, "over": f.over,
     }
 
 

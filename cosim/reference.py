@@ -19,7 +19,7 @@ from cosim.errors import InputError
 from cosim.features import QUANTITIES
 from cosim.units import Unit, to_si
 
-OWN_KEYS = ("name", "quantity", "unit", "thesis", "measured", "source", "tolerance")
+OWN_KEYS = ("name", "quantity", "unit", "thesis", "measured", "source", "tolerance", "over")
 COMPONENTS = ("fx", "fy", "fz", "f")
 
 
@@ -39,6 +39,7 @@ class Feature:
     thesis: tuple[float, float] | None = None  #: computed by the source, as range [SI]
     measured: tuple[float, float] | None = None  #: as range [SI]
     tolerance: float | None = None  #: relative, for those who test
+    over: float | None = None  #: loads are means over this time [s]; without it, over a window
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,14 @@ def _feature(entry: dict[str, Any], origin: str) -> Feature:
     _check_arguments(where, quantity, arguments)
     ranges = {key: _range(f"{where}: {key}", entry.get(key), entry["unit"]) for key in ("thesis", "measured")}
     return Feature(entry["name"], quantity, entry["unit"], entry["source"], arguments,
-                   tolerance=entry.get("tolerance"), **ranges)
+                   tolerance=entry.get("tolerance"), over=_time(f"{where}: over", entry.get("over")), **ranges)
+
+
+def _time(where: str, value: Any) -> float | None:
+    found = _range(where, value, "s")
+    if found is not None and not found[0] > 0.0:
+        raise FeatureError(f'{where} = {value!r}: give a time > 0, for example "0.5 s"')
+    return None if found is None else found[0]
 
 
 def _check_arguments(where: str, quantity: str, arguments: dict[str, Any]) -> None:

@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from cosim.build import build, run_info
 from cosim.observer import Observer
 from cosim.scenario import Scenario
+from cosim.sustained import SUSTAINED, running_mean
 from coupling.interface import NS, PHASES, Array, Event, Frame
 from coupling.scheduler import Scheduler
 
@@ -49,6 +50,7 @@ class RunResult:
     fragments: int = 0
     blocks: int = 0
     ledger: dict[str, float] = field(default_factory=dict)
+    loads: list[tuple[int, Array]] = field(default_factory=list)  #: end [ns] and load (3, 3) of every window
 
     def see(self, frame: Frame) -> None:
         """Takes in one window."""
@@ -56,14 +58,27 @@ class RunResult:
         self.peaks.see(frame.t_ns, frame.load.sum(axis=0))
         for phase, load in zip(PHASES, frame.load, strict=True):
             self.by_phase[phase].see(frame.t_ns, load)
+        self.loads.append((frame.t_ns, frame.load))
         self.events.extend(frame.events)
+
+    def sustained(self) -> dict[str, Any]:
+        """Peaks of the mean over `SUSTAINED`, of all phases and of each."""
+        end = np.array([t for t, _ in self.loads], np.int64)
+        mean = running_mean(np.concatenate(([0], end[:-1])), end, np.array([load for _, load in self.loads]))
+        peaks, by_phase = Peaks(), {p: Peaks() for p in PHASES}
+        for t, load in zip(end.tolist(), mean, strict=True):
+            peaks.see(t, load.sum(axis=0))
+            for k, phase in enumerate(by_phase.values()):
+                phase.see(t, load[k])
+        return {"seconds": SUSTAINED, "peaks": peaks.to_json(),
+                "peaks_by_phase": {name: p.to_json() for name, p in by_phase.items()}}
 
     def to_json(self) -> dict[str, Any]:
         simulated = self.t_ns / NS
         return {
             "scenario": self.scenario.title, "simulated_s": simulated, "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s, "peaks": self.peaks.to_json(),
-            "peaks_by_phase": {name: p.to_json() for name, p in self.by_phase.items()},
+            "peaks_by_phase": {name: p.to_json() for name, p in self.by_phase.items()}, "sustained": self.sustained(),
             "events": [event_json(e) for e in self.events], "fragments": self.fragments, "blocks": self.blocks,
             "ledger": self.ledger,
         }

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from cosim import messages
 from cosim.errors import InputError
+from cosim.sustained import running_mean
 from coupling.interface import NS, PHASES, Array, Event, IntArray
 
 DATA_TOPICS = ("/load/structure", "/events", "/ledger", "/load/budget")
@@ -53,6 +54,10 @@ class RunData:
             return np.linalg.norm(load, axis=1)
         out: Array = load[:, messages.AXES.index(name)]
         return out
+
+    def averaged(self, seconds: float) -> RunData:
+        """The run with loads that are means over the last ``seconds``; see `cosim.sustained`."""
+        return replace(self, load=running_mean(self.begin_ns, self.t_ns, self.load, seconds))
 
     @property
     def overrides(self) -> list[str]:

@@ -2,7 +2,8 @@
 
 A variant that fails does not stop the others: its row holds the error as one line. So does one whose process dies (no
 memory, a signal): the pool is then made anew, and what was under way runs again, one at a time, to find out which it
-was. Each variant computes on one thread, so that its numbers do not depend on how many run beside it.
+was. Each variant computes on one thread, so that its numbers do not depend on how many run beside it. Peaks are
+those of loads that last (`cosim.sustained`): the load of a single window depends on the window.
 """
 
 from __future__ import annotations
@@ -61,10 +62,10 @@ def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Ro
         result = run_scenario(load_scenario(scenario, (*overrides, *variant.overrides)), [mean]).to_json()
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}
-    row: Row = {}
+    row, lasting = {}, result["sustained"]
     for c in COMPONENTS:
-        row[f"{c}_peak"], row[f"{c}_time"] = result["peaks"][c]["value"], result["peaks"][c]["time"]
-        row |= {f"{p}_{c}_peak": result["peaks_by_phase"][p][c]["value"] for p in PHASES}
+        row[f"{c}_peak"], row[f"{c}_time"] = lasting["peaks"][c]["value"], lasting["peaks"][c]["time"]
+        row |= {f"{p}_{c}_peak": lasting["peaks_by_phase"][p][c]["value"] for p in PHASES}
     row["fx_mean"], row["fz_mean"] = float(mean.value[0]), float(mean.value[2])
     return row | {name: result[name] for name in ("simulated_s", "wall_s", "fragments", "blocks")}
 

@@ -54,7 +54,7 @@ def write_csv(content: dict[str, Any], out: Path) -> None:
 
 def show(content: dict[str, Any]) -> None:
     """The table for people."""
-    title = f"{content['scenario']}: peaks [MN], ratio to the base, largest Fx of each phase"
+    title = f"{content['scenario']}: peaks of 0.5 s means [MN], ratio to the base, largest Fx of each phase"
     table = Table(title=title, box=box.SIMPLE, title_justify="left", padding=(0, 0, 0, 1))
     for k, name in enumerate(COLUMNS):
         table.add_column(Text(name), justify="right" if k else "left", min_width=0 if k else 28)
