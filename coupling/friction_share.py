@@ -14,7 +14,7 @@ from coupling.structure import Structure
 
 
 def friction_part(structure: Structure, mu: float, face: float, level: float, y: Array, force: Array) -> Array:
-    """Friction in the force (m, >= 3) on nodes at u_x, u_y, w = y (m, 3); the touching face rests at ``level`` [m]."""
+    """Friction in the force (m, >= 3) on nodes displaced by y (m, 3); the touching face rests at ``level`` [m]."""
     part = np.zeros_like(force)
     on = np.flatnonzero(force.any(axis=1))
     if not len(on) or mu == 0.0:

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 
 from lattice.assembly import assemble
 from lattice.criteria import mohr_factors
-from lattice.engine import EdgeContact, Engine, State
+from lattice.engine import EdgeContact, Engine, State, point_displacement
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.kernels import LANES, LINE, LINES, push, sweep
@@ -149,9 +149,12 @@ class ExplicitEngine(Engine):
 
     def contact(self, t: float, contact: EdgeContact) -> NodeForces:
         """Contact force and tangent at time t for the displacements now."""
-        now = self.at(contact.nodes)
-        now[:, :2] += contact.height[:, None] * now[:, 3:]
-        return self.contact_at(t, contact, now[:, :3])
+        return self.contact_at(t, contact, self.touching(contact))
+
+    def touching(self, contact: EdgeContact) -> Array:
+        """Displacements of the points of action now, (m, 3) [m]."""
+        u, q = np.split(self.at(contact.nodes), [2], axis=1)
+        return point_displacement(u, q, np.arange(len(u)), contact.height)
 
     def contact_at(self, t: float, contact: EdgeContact, at: Array) -> NodeForces:
         """The same for displacements ``at`` (m, 3) of the points of action [m]."""

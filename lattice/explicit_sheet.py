@@ -107,7 +107,7 @@ class ExplicitSheet(Sheet):
         steps = min(self.block, e.sub_steps - done)
         patch = e.contact(t + (done + 0.5 * steps) * e.dt, contact)
         before = e.displacement()
-        holding, at = self._holding(), e.at(contact.nodes)[:, :3]
+        holding, at = self._holding(), e.touching(contact)
         out = e.march(steps, load, patch, self._lively)
         self._note(out.steps * e.dt, before, load)
         impulse[contact.nodes] += out.steps * e.dt * out.contact
@@ -130,9 +130,9 @@ class ExplicitSheet(Sheet):
         return self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
 
     def _book(self, out: Marched, load: NodeForces, holding: float, at: Array, contact: EdgeContact) -> None:
-        """Books sub-steps before which the edge was held with ``holding`` [N] and its nodes stood ``at`` (m, 3) [m]."""
+        """Books sub-steps before which the edge was held with ``holding`` [N] and its points were ``at`` (m, 3) [m]."""
         books, time = self.energy, out.steps * self.engine.dt
-        after = self.engine.at(contact.nodes)[:, :3]
+        after = self.engine.touching(contact)
         books.touch.work += out.contact_work
         books.touch.push += time * float(out.contact[:, 0].sum())
         books.rub.add(time, books.friction_of(after, out.contact), (after - at) / time)
