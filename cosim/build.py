@@ -97,7 +97,7 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         mu_structure=r.friction_structure, restitution=r.restitution, form_drag=r.form_drag, skin_drag=r.skin_drag,
         added_mass=r.added_mass, added_inertia=r.added_mass, thickness=i.thickness, iterations=r.iterations,
         substep=r.substep, sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2,
-        backfill=r.backfill, filling_time=r.filling_time,
+        backfill=r.backfill, filling_time=r.filling_time, feed_speed=scenario.drift.velocity,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength)
     pitch = r.columns_per_section * grid.d
     crest = float(structure.face_x(0.0, structure.top))  # of a plane that leans back, over which ice may ride

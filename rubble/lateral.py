@@ -2,6 +2,10 @@
 
 The structure presses a block across with ``N n_y`` and resists with friction against the direction of slip, see
 `friction`; ice around it resists likewise with its own normal forces, and water drags on the side face.
+
+A section's cut of the structure does not recede when a block moves across, as the true face would. Seen in the plane
+the face recedes by ``v_y n_y / n_p``, and the block stays in touch only as long as the ice behind feeds it that fast.
+So the push ends at ``v_y = V n_p / n_y`` with V the speed of the feed: beyond, the block has left the structure.
 """
 
 from __future__ import annotations
@@ -17,14 +21,15 @@ from rubble.geometry import Array, IntArray, moments, place, submerged
 PUSHED, RUBBED, DRAGGED, ACROSS = 0, 1, 3, 4
 
 
-@njit("void(float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], float64[:, ::1], "
-      "float64[:, ::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
-def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, offset: IntArray, mass: Array,
-               state: Array, sums: Array, side: Array, load: Array, work: Array) -> None:
+@njit("void(float64, float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], "
+      "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
+def side_steps(dt: float, mu_ice: float, half_rho_cd: float, feed: float, polygons: Array, offset: IntArray,
+               mass: Array, state: Array, sums: Array, side: Array, load: Array, work: Array) -> None:
     """Move the blocks of a section across by one window; ``load`` (n, 3) becomes the mean force on the structure [N].
 
     ``sums`` as in `contacts`; ``side`` (2, n): y and v_y, changed here; ``mass`` with added mass; ``half_rho_cd`` =
-    rho_w C_d / 2; ``work`` see ACROSS. Backward Euler for friction and drag, so neither turns the motion around.
+    rho_w C_d / 2; ``feed`` V above [m/s]; ``work`` see ACROSS. Backward Euler for friction and drag, so neither turns
+    the motion around.
     """
     for i in range(mass.shape[0]):
         load[i, 0], load[i, 1], load[i, 2] = sums[i, 0] / dt, -sums[i, 2] / dt, sums[i, 1] / dt
@@ -40,6 +45,12 @@ def side_steps(dt: float, mu_ice: float, half_rho_cd: float, polygons: Array, of
             work[RUBBED] += 0.5 * mass[i] * (free * free - v * v) * grip / (grip + rub)
             work[RUBBED + 1] += 0.5 * mass[i] * (free * free - v * v) * rub / (grip + rub)
             load[i, 1] += mass[i] * (free - v) / dt * grip / (grip + rub)
+        most = feed * np.hypot(sums[i, 0], sums[i, 1]) / abs(sums[i, 2]) if sums[i, 2] != 0.0 else np.inf
+        if v * sums[i, 2] > 0.0 and abs(v) > max(most, abs(side[1, i])):
+            slower = np.sign(v) * max(most, side[1, i] * np.sign(v))
+            work[PUSHED] -= 0.5 * mass[i] * (v * v - slower * slower)
+            load[i, 1] += mass[i] * (v - slower) / dt
+            v = slower
         wet = moments(submerged(place(polygons[offset[i]:offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0)))
         side[1, i] = v / (1.0 + dt * half_rho_cd * wet[0] * abs(v) / mass[i])
         side[0, i] += dt * side[1, i]

@@ -194,8 +194,8 @@ class RubbleLayer:
                                "is not finite; shorten rubble.substep")
         p, side = self.physics, section.side
         mu = 0.1 if p.mu_ice_ice == RATE_DEPENDENT else float(p.mu_ice_ice)  # across: sliding, the upper end of speed
-        side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, section.polygons, section.corners, section.moved,
-                   section.state, section.sums, side.copy() if self.hold_across else side, section.load,
+        side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, p.feed_speed, section.polygons, section.corners,
+                   section.moved, section.state, section.sums, side.copy() if self.hold_across else side, section.load,
                    section.across_work)
         section.update_phases()
         if section.heavy[0, 0] > 0:

@@ -38,6 +38,7 @@ class RubblePhysics:
     filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
     backfill_level: float = 0.0  #: height of the water on the tops, <= 0 [m]
     contact_strength: float = inf  #: pressure at which a contact crushes [Pa]
+    feed_speed: float = inf  #: with which ice comes against the structure; see `lateral` [m/s]
 
     def __post_init__(self) -> None:
         for f in fields(self):
@@ -47,7 +48,7 @@ class RubblePhysics:
             elif f.name == "backfill_level":
                 if not (isfinite(value) and value <= 0):
                     raise ValueError(f"rubble.backfill_level is {value}; water on a block stands at z <= 0")
-            elif not value >= 0 or (not isfinite(value) and f.name != "contact_strength"):
+            elif not value >= 0 or (not isfinite(value) and f.name not in _MAY_BE_INFINITE):
                 raise ValueError(f"rubble.{f.name} is {value}; it must be a number >= 0")
         for name in _POSITIVE:
             if getattr(self, name) == 0:
@@ -76,5 +77,6 @@ class RubblePhysics:
         return 1.0 / self.filling_time if self.backfill == "filling" else 0.0
 
 
+_MAY_BE_INFINITE = ("contact_strength", "feed_speed")
 _POSITIVE = ("rho_i", "rho_w", "thickness", "slop_ratio", "iterations", "substep", "sheet_mass", "filling_time",
-             "contact_strength")
+             "contact_strength", "feed_speed")

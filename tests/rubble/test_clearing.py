@@ -68,3 +68,27 @@ def test_a_block_passes_under_the_toe():
         layer.advance(10)
     assert layer.cleared == [1]
     assert layer.table().position[0, 0] < -7.0
+
+
+def pressed_aside(feed_speed):
+    """A block pressed against the flank of a cone for 10 s; its largest speed across [m/s] and the push's work [J]."""
+    shape = cone(np.radians(45), 10.0, 6.0, top=5.0, toe_depth=8.0)
+    physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, mu_ice_ice=0.0, mu_structure=0.0, form_drag=0.0,
+                            skin_drag=0.0, feed_speed=feed_speed)
+    layer = RubbleLayer(physics, WIDTH, revolved=True, solids=lambda y: convex_parts(
+        shape.section_outline(y, shape.bottom, shape.top, 1e-3)))
+    draft = H * 846 / 1006
+    outline = np.array([(-14.0, -draft), (-10.0, -draft), (-10.0, H - draft), (-14.0, H - draft)])
+    number = layer.add_block(1, outline, np.array([-14.0, -10.0]), np.array([WIDTH]), 846.0, (0.1, 0.0), 0.0, 5.0, 0)
+    thrust(layer, number, 2e5)
+    fastest = 0.0
+    while layer.time < 10.0 and layer.blocks:
+        layer.advance(WINDOW)
+        fastest = max([fastest, *(abs(b.v_y) for b in layer.blocks)])
+    return fastest
+
+
+def test_the_structure_pushes_no_block_aside_faster_than_the_ice_feeds_it():
+    """A face that does not recede would push for ever: n_p / n_y of the flank is below 3 where the block lies."""
+    assert pressed_aside(0.1) < 0.3
+    assert pressed_aside(np.inf) > 0.6
