@@ -319,7 +319,7 @@ class SheetPort:
         assert out.failure is not None
         t_ns, load = round(out.failure[0] * NS), rubble_load - out.failure[1].sum(axis=0)
         events = []
-        if self._quiet:
+        if self._quiet and out.failed:
             where = self._cells_centre(out.failed)
             text = "1 cell fails" if len(out.failed) == 1 else f"{len(out.failed)} cells fail"
             events.append(self._event(t_ns, "cell_failure", load, len(out.failed), where, text))

@@ -22,11 +22,12 @@ def components(grid: Grid, intact: np.ndarray) -> IntArray:
 
 
 def loose_pieces(grid: Grid, intact: np.ndarray, present: np.ndarray, held: np.ndarray, share: float,
-                 ) -> tuple[list[IntArray], int]:
+                 turned: np.ndarray | None = None) -> tuple[list[IntArray], int]:
     """Pieces that leave the lattice, and the number of parts that stay.
 
     A piece leaves when none of its nodes is held and its area is below `share` of the whole floe; a larger free part
-    stays and floats. ``present`` and ``held`` are per node. Pieces come as node numbers, ordered by their first node.
+    stays and floats. A part of which every node has ``turned`` leaves in any case. ``present``, ``held`` and ``turned``
+    are per node. Pieces come as node numbers, ordered by their first node.
     """
     label = components(grid, intact)
     label = np.where(present, label, -1)
@@ -36,6 +37,10 @@ def loose_pieces(grid: Grid, intact: np.ndarray, present: np.ndarray, held: np.n
     exists = np.zeros(len(area), bool)
     exists[label[present]] = True
     loose = exists & ~has_held & (area < share * grid.area.sum())
+    if turned is not None:
+        still = np.zeros(len(area), bool)
+        still[label[present & ~turned]] = True
+        loose |= exists & ~still
     pieces = [np.flatnonzero(label == k) for k in np.flatnonzero(loose)]
     return sorted(pieces, key=lambda p: int(p[0])), int((exists & ~loose).sum())
 

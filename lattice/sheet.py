@@ -251,8 +251,9 @@ class Sheet:
         self.intact[cell] = False
         self.engine.remove(np.array([cell]))
 
-    def _release_loose(self, out: Outcome, release: Callable[[IntArray], None]) -> None:
-        pieces, self.parts = loose_pieces(self.grid, self.intact, self.present, self.held, self.share)
+    def _release_loose(self, out: Outcome, release: Callable[[IntArray], None],
+                       turned: np.ndarray | None = None) -> None:
+        pieces, self.parts = loose_pieces(self.grid, self.intact, self.present, self.held, self.share, turned)
         for piece in pieces:
             live = self.live_cells
             self.present[piece] = False
@@ -265,16 +266,20 @@ class Sheet:
         return np.where(self.present, np.abs(self.state.q[:, 1:]).max(axis=1), 0.0)
 
     def _tear_off(self, t: float, contact: EdgeContact, out: Outcome, release: Callable[[IntArray], None]) -> None:
-        """Parts a piece that has turned out of the range of small rotations, with what has gone half as far."""
-        turned = (self._rotation() > 0.5 * TURNED)[self.grid.cell_nodes]
-        cells = np.flatnonzero(self.live_cells & turned.any(axis=1) & ~turned.all(axis=1)).tolist()
-        if not cells:  # a free part that has turned as a whole
-            return
-        out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
+        """Parts a piece that has turned out of the range of small rotations, with what has gone half as far.
+
+        A part that has turned as a whole leaves too, whatever its size and wherever it is held in the plane.
+        """
+        turned = self._rotation() > 0.5 * TURNED
+        corners = turned[self.grid.cell_nodes]
+        cells = np.flatnonzero(self.live_cells & corners.any(axis=1) & ~corners.all(axis=1)).tolist()
+        force = contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
         for cell in cells:
             self._fail(cell)
         out.failed += cells
-        self._release_loose(out, release)
+        self._release_loose(out, release, turned)
+        if cells or out.pieces:
+            out.failure = t, force
 
     def retire(self, nodes: IntArray) -> None:
         """Takes nodes out whose ice is gone (crushed), with the cells that they hold up."""

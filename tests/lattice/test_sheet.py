@@ -110,9 +110,13 @@ def test_a_hanging_piece_that_has_turned_too_far_leaves():
     assert sheet.energy.handed_over > 0.0
 
 
-def test_a_free_floe_that_has_turned_as_a_whole_tears_nothing():
-    """No cell lies between what has turned and what has not: no failure is told."""
-    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=np.zeros(GRID.nodes, bool))
+@pytest.mark.parametrize("held", [False, True])
+def test_a_part_that_has_turned_as_a_whole_leaves_without_a_failure(held):
+    """Whatever its size and where it is held in the plane: its rotation is out of the lattice's range."""
+    at = np.zeros(GRID.nodes, bool)
+    at[GRID.edge_nodes("x-")] = held
+    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=at)
     sheet.state.q[:] = np.column_stack((-0.2 * (GRID.xy[:, 0] - 12.0), np.full(GRID.nodes, 0.2), np.zeros(GRID.nodes)))
     out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
-    assert out.failure is None and not out.failed and not out.pieces
+    assert not out.failed and [len(p) for p in out.pieces] == [GRID.nodes]
+    assert not sheet.present.any()
