@@ -1,6 +1,7 @@
 """Where the time of a coupled run goes: the 165 m floe with its rubble, recorded, room by room.
 
-    python tests/benchmarks/coupled_rooms.py [--duration 40] [--initial 1000] [--nodes 60] [--threads 1] [--set A.B=V]
+    python tests/benchmarks/coupled_rooms.py [--duration 40] [--initial 1000] [--nodes 60] [--threads 1] [--scenario NAME]
+                                             [--set A.B=V]
 
 Prints simulated over wall time (goal: at least 3 on two cores; beside other work the processor time says more) and the
 share of each room. Timers stand at the doors of the rooms and count what happens inside without the rooms that are
@@ -125,7 +126,8 @@ def kernels(s: Section) -> dict[str, float]:
     flooded, losses, sums, heavy, sheet = (a.copy() for a in (s._flooded, s.losses, s.sums, s.heavy, s.sheet_sums))
 
     def water(dead):
-        apply_water(s._edges, s._offset, dead, s.water, flooded, s._state, s._bodies, _BODY, losses)
+        apply_water(s._edges, s._offset, dead, s.water, flooded, s._state, s._bodies, _BODY,
+                    s._pressure.copy(), losses)
 
     def contacts(header):
         accumulate(header, reader.pairs, reader.layout, s._addresses, s._slots, s._state, s._friction.structure, s.side,
@@ -138,7 +140,7 @@ def kernels(s: Section) -> dict[str, float]:
 
 def measure(a: argparse.Namespace) -> tuple[float, float, dict[str, float], int]:
     """Wall and processor time [s], time by room [s], blocks at the end."""
-    scenario = load_scenario("van_vliet_2018_floe_165m", [
+    scenario = load_scenario(a.scenario, [
         f"sheet.nodes=[{a.nodes}, {a.nodes}]", f"scenario.duration='{a.duration} s'", f"rubble.threads={a.threads}",
         f"rubble.initial_volume='{a.initial} m^3'", *a.overrides])
     with threadpool_limits(1), tempfile.TemporaryDirectory() as folder:
@@ -172,6 +174,7 @@ def main() -> None:
     parser.add_argument("--initial", type=float, default=1000.0, help="initial rubble [m^3]")
     parser.add_argument("--nodes", type=int, default=60, help="along x and y")
     parser.add_argument("--threads", type=int, default=1, help="of the rubble")
+    parser.add_argument("--scenario", default="van_vliet_2018_floe_165m")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="A.B=V")
     a = parser.parse_args()
     wall, busy, rooms, blocks = measure(a)
