@@ -1,7 +1,7 @@
 """Where the time of a coupled run goes: the 165 m floe with its rubble, recorded, room by room.
 
-    python tests/benchmarks/coupled_rooms.py [--duration 40] [--initial 1000] [--nodes 60] [--threads 1] [--scenario NAME]
-                                             [--set A.B=V]
+    python tests/benchmarks/coupled_rooms.py [--duration 40] [--initial 1000] [--nodes 60] [--threads 1]
+                                             [--scenario NAME] [--set A.B=V]
 
 Prints simulated over wall time (goal: at least 3 on two cores; beside other work the processor time says more) and the
 share of each room. Timers stand at the doors of the rooms and count what happens inside without the rooms that are
