@@ -213,15 +213,6 @@ class Engine:
             u = CrackedSystem(g, self.rows_u, self._intact, np.zeros(2 * n), 1.0, self._held).solve(force_u.ravel())
         return State(u.reshape(n, 2), q.reshape(n, 3), np.zeros((n, 2)), np.zeros((n, 3)))
 
-    def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
-        """Force per displacement of single nodes in x and z, for motions of the length of a stage [N/m].
-
-        Of the step length used last.
-        """
-        x = np.diagonal(self._in.compliance(_dof_u(nodes)))[::2]
-        z = np.diagonal(self._out.compliance(_dof_w(nodes)))
-        return [(1.0 / max(float(a), 1e-15), 1.0 / float(b)) for a, b in zip(x, z, strict=True)]
-
     def step(self, t: float, dt: float, state: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Step:
         """One step from time t. ``force_u`` (n, 2) and ``force_q`` (n, 3) are constant external forces.
 

@@ -177,8 +177,3 @@ class ExplicitEngine(Engine):
                             contact.force, contact.tangent, np.zeros((m, 5)), total, books)
         loss = books[2] * (1 if lively else made)
         return Marched(made, count > 0, total / made, self.dt * books[0], self.dt * books[1], loss)
-
-    def point_stiffness(self, nodes: IntArray) -> list[tuple[float, float]]:
-        """As in `Engine`, for motions of the length of a window."""
-        self.use(self.window)
-        return super().point_stiffness(nodes)

@@ -33,7 +33,7 @@ class RubblePhysics:
     iterations: int = 30  #: of the impulse solver; at least the length of a chain of blocks
     substep: float = 0.005  #: constant [s]
     align_tolerance: float = 0.0873  #: a block is aligned within this angle of the slope [rad]
-    sheet_mass: float = 5e4  #: mass of the sheet's edge that moves with a contact [kg]
+    sheet_mass: float = 5e4  #: mass of the edge of a still sheet, under which rubble settles [kg]
     backfill: Backfill = "full"  #: whether the top of a new block floods: at once, never, or over `filling_time`
     filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
     backfill_level: float = 0.0  #: height of the water on the tops, <= 0 [m]

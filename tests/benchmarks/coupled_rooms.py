@@ -46,7 +46,7 @@ from rubble.water import apply_water
 
 #: room: doors, (where, name)
 DOORS = {
-    "lattice solve": [(Engine, "step"), (Engine, "remove"), (Engine, "point_stiffness"), (CrackedSystem, "compliance"),
+    "lattice solve": [(Engine, "step"), (Engine, "remove"), (Sheet, "answer"), (CrackedSystem, "compliance"),
                       (CrackedSystem, "response")],
     "failure checks": [(Sheet, "_utilisation"), (Sheet, "_cells"), (Sheet, "_release_loose"), (Sheet, "_locate")],
     "edge contact": [(OverlapContact, "evaluate"), (OverlapContact, "settle"), (Engine, "_contact_force"),
