@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 from numba import njit
 
+from coupling import sheet_events
 from coupling.budget import Pairs
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
@@ -317,52 +318,25 @@ class SheetPort:
     def _events(self, out: Outcome, parts_before: int, rubble_load: Array) -> list[Event]:
         """Events of a window in which cells failed, with the time of the first failure and the load then."""
         assert out.failure is not None
-        t_ns, load = round(out.failure[0] * NS), rubble_load - out.failure[1].sum(axis=0)
+        t_ns, load, cells = round(out.failure[0] * NS), rubble_load - out.failure[1].sum(axis=0), len(out.failed)
         events = []
-        if self._quiet and out.failed:
-            where = self._cells_centre(out.failed)
-            text = "1 cell fails" if len(out.failed) == 1 else f"{len(out.failed)} cells fail"
-            events.append(self._event(t_ns, "cell_failure", load, len(out.failed), where, text))
-        if out.parts > parts_before:
-            text = f"the floe splits, {out.parts} parts stay in the lattice"
-            events.append(self._event(t_ns, "split", load, len(out.failed), self._cells_centre(out.failed), text))
+        if cells:
+            where = self._position(self.sheet.grid.cell_nodes[out.failed].ravel()).mean(axis=0)
+            parts = out.parts if out.parts > parts_before else None
+            events += sheet_events.failures(t_ns, load, cells, where, parts, self._quiet)
         for fragment, at_structure in zip(self._fragments, self._at_structure, strict=True):
-            events += self._piece_events(t_ns, load, len(out.failed), fragment, at_structure)
+            events += sheet_events.departure(t_ns, load, cells, fragment, at_structure)
         return events
 
     def _lifted_out(self, load: Array) -> list[Event]:
-        """One event of a run: where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the missing
-        buoyancy. That is right until the underside leaves the water at w = draft; beyond, it pulls too much."""
+        """One event of a run, when the sheet first leaves the water."""
         w = np.where(self.sheet.present, self.sheet.state.q[:, 0], 0.0)
         highest = int(np.argmax(w))
         if not self._afloat or w[highest] <= self.draft:
             return []
         self._afloat = False
-        text = (f"the sheet is lifted by {w[highest]:.2f} m, more than its draft of {self.draft:.2f} m: "
-                "from here on the linear foundation pulls it down with more than its weight")
         where = self._position(np.array([highest]))[0]
-        return [self._event(round(self._t * NS), "out_of_water", load, 0, where, text)]
-
-    def _piece_events(self, t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
-        where = np.average(f.position, axis=0, weights=f.length * f.width)
-        length = max(float(f.length[f.column == c].sum()) for c in np.unique(f.column))
-        area = float((f.length * f.width).sum())
-        text = f"a piece of {area:.0f} m2, {f.mass.sum() / 1e3:.0f} t"
-        events = []
-        if at_structure:
-            what = f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"
-            events.append(self._event(t_ns, "circumferential", load, cells, where, what, length, area))
-        return [*events, self._event(t_ns, "hand_over", load, cells, where, f"{text}, becomes rubble", length, area)]
-
-    def _cells_centre(self, cells: list[int]) -> Array:
-        corners = self.sheet.grid.cell_nodes[cells].ravel()
-        return self._position(corners).mean(axis=0)
-
-    def _event(self, t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str, length: float = 0.0,
-               area: float = 0.0) -> Event:
-        force = (float(load[0]), float(load[1]), float(load[2]))
-        place = (float(where[0]), float(where[1]), float(where[2]))
-        return Event(t_ns, kind, force, cells, place, text, length, area)
+        return [sheet_events.lifted_out(round(self._t * NS), load, where, float(w[highest]), self.draft)]
 
 
 @njit(cache=True)
