@@ -12,7 +12,7 @@ from scipy.signal import find_peaks
 
 from cosim.moments import Kinds, between, encounters, events_of, first_contact
 from cosim.run_data import RunData
-from coupling.interface import NS
+from coupling.interface import NS, Array
 
 
 def largest_load(run: RunData, component: str = "fx", phase: str | None = None, begin: float = 0.0,
@@ -23,7 +23,7 @@ def largest_load(run: RunData, component: str = "fx", phase: str | None = None, 
         return None
     t = run.t - start
     chosen = (t > begin) & (t <= (np.inf if end is None else end) + 1e-9)
-    return float(run.component(component, phase)[chosen].max()) if chosen.any() else None
+    return _largest(run.component(component, phase)[chosen]) if chosen.any() else None
 
 
 def encounter_load(run: RunData, n: int = 1, event: Kinds = "circumferential", component: str = "fx",
@@ -32,7 +32,12 @@ def encounter_load(run: RunData, n: int = 1, event: Kinds = "circumferential", c
     found = encounters(run, event)
     if not 1 <= n <= len(found):
         return None
-    return float(run.component(component, phase)[found[n - 1].begin:found[n - 1].end + 1].max())
+    return _largest(run.component(component, phase)[found[n - 1].begin:found[n - 1].end + 1])
+
+
+def _largest(load: Array) -> float:
+    """The load that is largest in magnitude, with its sign: an upward-breaking structure is pressed down, Fz < 0."""
+    return float(load[np.abs(load).argmax()])
 
 
 def encounter_time(run: RunData, n: int = 1, event: Kinds = "circumferential") -> float | None:

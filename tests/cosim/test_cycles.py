@@ -119,3 +119,12 @@ def test_phases_add_up_to_the_total_at_every_sample(run_file):
         totals.append((message.fx, message.fy, message.fz))
     assert np.array(totals) == pytest.approx(run.load.sum(axis=1), rel=1e-9)
     assert len(totals) == len(run.t)
+
+
+def test_a_structure_that_is_pressed_down_has_its_largest_load_below_zero():
+    run = saw()
+    load = run.load.copy()
+    load[:, 0, 2] = -load[:, 0, 0]
+    up = dataclasses.replace(run, load=load)
+    assert cycles.encounter_load(up, 2, component="fz") == pytest.approx(-load[:, 0, 0][:260].max(), rel=0.02)
+    assert cycles.largest_load(up, "fz") == load[:, 0, 2].min()
