@@ -10,7 +10,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.signal import find_peaks
 
-from cosim.moments import Kinds, between, encounters, events_of, first_contact
+from cosim.moments import Kinds, between, encounters, evenly, events_of, first_contact, largest
 from cosim.run_data import RunData
 from coupling.interface import NS, Array
 
@@ -36,8 +36,8 @@ def encounter_load(run: RunData, n: int = 1, event: Kinds = "circumferential", c
 
 
 def _largest(load: Array) -> float:
-    """The load that is largest in magnitude, with its sign: an upward-breaking structure is pressed down, Fz < 0."""
-    return float(load[np.abs(load).argmax()])
+    """The load that is `largest`, with its sign."""
+    return float(load[largest(load)])
 
 
 def encounter_time(run: RunData, n: int = 1, event: Kinds = "circumferential") -> float | None:
@@ -74,8 +74,8 @@ def cycle_period(run: RunData, component: str = "fx", after: Kinds | None = None
     t_ns, load = run.t_ns[chosen], run.component(component)[chosen]
     if len(load) < 3 or not load.max() > 0:
         return None
-    step = int(np.diff(t_ns).min())  # windows of different length are read at the distance of the shortest
-    even = np.interp(np.arange(t_ns[0], t_ns[-1] + 1, step), t_ns, load)
+    even_ns, even = evenly(t_ns, load)
+    step = int(even_ns[1] - even_ns[0])
     even = uniform_filter1d(even, max(1, round(smooth * NS / step)), mode="nearest")
     peaks, _ = find_peaks(even, prominence=prominence * load.max())
     return float(np.median(np.diff(peaks))) * step / NS if len(peaks) > 2 else None

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from cosim import cycles
-from cosim.moments import Kinds, between, first_contact, first_event
+from cosim.moments import Kinds, between, evenly, first_contact, first_event, largest
 from cosim.run_data import RunData
-from coupling.interface import NS, PHASES, Array, IntArray
+from coupling.interface import NS, PHASES
 
 
 def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> int | None:
-    """Window of the load that is largest in magnitude: an upward-breaking structure is pressed down, Fz < 0."""
-    values = np.abs(run.component(component, phase))
-    return int(values.argmax()) if len(values) else None
+    """Window of the load that is `largest`; None if there is no window."""
+    values = run.component(component, phase)
+    return largest(values) if len(values) else None
 
 
 def event_load(run: RunData, event: Kinds, component: str = "fx") -> float | None:
@@ -90,22 +90,17 @@ def load_period(run: RunData, component: str = "fx", after: Kinds | None = None,
     if begin is None:
         return None
     chosen = (run.t_ns > begin) & (run.t_ns <= end)
-    t, load = run.t[chosen], run.component(component)[chosen]
-    if len(t) < 8 or np.ptp(load) == 0:
+    t_ns, load = run.t_ns[chosen], run.component(component)[chosen]
+    if len(t_ns) < 8 or np.ptp(load) == 0:
         return None
-    t, load = _evenly(run.t_ns[chosen], load)
+    t_ns, load = evenly(t_ns, load)
+    t = t_ns / NS
     cycles = load - np.polyval(np.polyfit(t, load, 1), t)
     padded = 8 * len(t)
     power = np.abs(np.fft.rfft(cycles * np.hanning(len(t)), padded)) ** 2
     frequency = np.fft.rfftfreq(padded, t[1] - t[0])
     power[frequency < 3 / (t[-1] - t[0])] = 0
     return float(1 / frequency[power.argmax()]) if power.any() else None
-
-
-def _evenly(t_ns: IntArray, load: Array) -> tuple[Array, Array]:
-    """Times [s] at even distances, the shortest that occurs, and the load there."""
-    even = np.arange(t_ns[0], t_ns[-1] + 1, np.diff(t_ns).min())
-    return even / NS, np.interp(even, t_ns, load)
 
 
 def rubble_volume(run: RunData) -> float | None:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cosim.run_data import RunData
-from coupling.interface import NS, Array, Event
+from coupling.interface import NS, Array, Event, IntArray
 
 Kinds = str | Sequence[str]
 DROP = 0.5  #: share of an encounter's largest load below which the load has dropped, and from which it builds up
@@ -26,6 +26,17 @@ class Encounter:
     begin: int
     event: int
     end: int
+
+
+def largest(load: Array) -> int:
+    """Place of the load that is largest in magnitude: an upward-breaking structure is pressed down, Fz < 0."""
+    return int(np.abs(load).argmax())
+
+
+def evenly(t_ns: IntArray, load: Array) -> tuple[IntArray, Array]:
+    """Times at even distances, the shortest that occurs [ns], and the load there."""
+    even = np.arange(t_ns[0], t_ns[-1] + 1, np.diff(t_ns).min())
+    return even, np.interp(even, t_ns, load)
 
 
 def events_of(run: RunData, event: Kinds) -> list[Event]:

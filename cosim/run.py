@@ -37,6 +37,22 @@ class Peaks:
                 for name, v, t in zip(COMPONENTS, self.value, self.t_ns.tolist(), strict=True)}
 
 
+class PeaksByPhase:
+    """Peaks of the whole load and of that of each phase."""
+
+    def __init__(self) -> None:
+        self.total, self.of = Peaks(), {p: Peaks() for p in PHASES}
+
+    def see(self, t_ns: int, load: Array) -> None:
+        """Takes in the load (3, 3) of a window, rows by phase."""
+        self.total.see(t_ns, load.sum(axis=0))
+        for phase, part in zip(self.of.values(), load, strict=True):
+            phase.see(t_ns, part)
+
+    def to_json(self) -> dict[str, Any]:
+        return {"peaks": self.total.to_json(), "peaks_by_phase": {name: p.to_json() for name, p in self.of.items()}}
+
+
 @dataclass
 class RunResult:
     """What a run came to, in SI units."""
@@ -44,8 +60,7 @@ class RunResult:
     scenario: Scenario
     wall_s: float = 0.0
     t_ns: int = 0
-    peaks: Peaks = field(default_factory=Peaks)
-    by_phase: dict[str, Peaks] = field(default_factory=lambda: {p: Peaks() for p in PHASES})
+    windows: PeaksByPhase = field(default_factory=PeaksByPhase)  #: of single windows
     events: list[Event] = field(default_factory=list)
     fragments: int = 0
     blocks: int = 0
@@ -55,30 +70,41 @@ class RunResult:
     def see(self, frame: Frame) -> None:
         """Takes in one window."""
         self.t_ns = frame.t_ns
-        self.peaks.see(frame.t_ns, frame.load.sum(axis=0))
-        for phase, load in zip(PHASES, frame.load, strict=True):
-            self.by_phase[phase].see(frame.t_ns, load)
+        self.windows.see(frame.t_ns, frame.load)
         self.loads.append((frame.t_ns, frame.load))
         self.events.extend(frame.events)
+
+    @property
+    def peaks(self) -> Peaks:
+        """Of the whole load."""
+        return self.windows.total
+
+    @property
+    def by_phase(self) -> dict[str, Peaks]:
+        """Of the load of each phase."""
+        return self.windows.of
+
+    def mean_load(self) -> Array:
+        """Mean over the run (3,) [N]."""
+        impulse, before = np.zeros(3), 0
+        for t, load in self.loads:
+            impulse, before = impulse + (t - before) * load.sum(axis=0), t
+        return np.asarray(impulse / max(before, 1))
 
     def sustained(self) -> dict[str, Any]:
         """Peaks of the mean over `SUSTAINED`, of all phases and of each."""
         end = np.array([t for t, _ in self.loads], np.int64)
         mean = running_mean(np.concatenate(([0], end[:-1])), end, np.array([load for _, load in self.loads]))
-        peaks, by_phase = Peaks(), {p: Peaks() for p in PHASES}
+        peaks = PeaksByPhase()
         for t, load in zip(end.tolist(), mean, strict=True):
-            peaks.see(t, load.sum(axis=0))
-            for k, phase in enumerate(by_phase.values()):
-                phase.see(t, load[k])
-        return {"seconds": SUSTAINED, "peaks": peaks.to_json(),
-                "peaks_by_phase": {name: p.to_json() for name, p in by_phase.items()}}
+            peaks.see(t, load)
+        return {"seconds": SUSTAINED, **peaks.to_json()}
 
     def to_json(self) -> dict[str, Any]:
         simulated = self.t_ns / NS
         return {
             "scenario": self.scenario.title, "simulated_s": simulated, "wall_s": self.wall_s,
-            "real_time_factor": simulated / self.wall_s, "peaks": self.peaks.to_json(),
-            "peaks_by_phase": {name: p.to_json() for name, p in self.by_phase.items()}, "sustained": self.sustained(),
+            "real_time_factor": simulated / self.wall_s, **self.windows.to_json(), "sustained": self.sustained(),
             "events": [event_json(e) for e in self.events], "fragments": self.fragments, "blocks": self.blocks,
             "ledger": self.ledger,
         }

@@ -16,11 +16,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from typing import Any
 
-import numpy as np
-
-from cosim.observer import RunInfo
 from cosim.variants import Variant
-from coupling.interface import PHASES, Array, Frame
+from coupling.interface import PHASES
 
 Row = dict[str, Any]
 COMPONENTS = ("fx", "fz", "f")
@@ -30,27 +27,6 @@ RESULTS = (*(f"{c}_peak" for c in COMPONENTS), *(f"{c}_time" for c in COMPONENTS
            "fragments", "blocks")
 
 
-class MeanLoad:
-    """Observer: mean load over the run (3,) [N]."""
-
-    def __init__(self) -> None:
-        self._impulse, self._t_ns = np.zeros(3), 0
-
-    def on_start(self, run_info: RunInfo) -> None:
-        """Nothing to prepare."""
-
-    def on_frame(self, frame: Frame) -> None:
-        self._impulse += (frame.t_ns - self._t_ns) * frame.load.sum(axis=0)
-        self._t_ns = frame.t_ns
-
-    def on_close(self) -> None:
-        """Nothing to close."""
-
-    @property
-    def value(self) -> Array:
-        return self._impulse / max(self._t_ns, 1)
-
-
 def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Row:
     """Simulate one variant; what goes wrong becomes ``error``, one line. Runs in a process of the pool."""
     from cosim.cli import explain
@@ -58,15 +34,15 @@ def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Ro
     from cosim.scenario import load_scenario
 
     try:
-        mean = MeanLoad()
-        result = run_scenario(load_scenario(scenario, (*overrides, *variant.overrides)), [mean]).to_json()
+        run = run_scenario(load_scenario(scenario, (*overrides, *variant.overrides)))
+        result, mean = run.to_json(), run.mean_load()
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}
     row, lasting = {}, result["sustained"]
     for c in COMPONENTS:
         row[f"{c}_peak"], row[f"{c}_time"] = lasting["peaks"][c]["value"], lasting["peaks"][c]["time"]
         row |= {f"{p}_{c}_peak": lasting["peaks_by_phase"][p][c]["value"] for p in PHASES}
-    row["fx_mean"], row["fz_mean"] = float(mean.value[0]), float(mean.value[2])
+    row["fx_mean"], row["fz_mean"] = float(mean[0]), float(mean[2])
     return row | {name: result[name] for name in ("simulated_s", "wall_s", "fragments", "blocks")}
 
 

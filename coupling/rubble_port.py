@@ -64,7 +64,6 @@ class RubblePort:
                                  domain=domain, threads=threads)
         self.physics, self.columns_per_section = physics, columns_per_section
         self.structure = structure
-        self.pile: Pile | None = None  #: the initial rubble as it settled
         self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
         self._edges: dict[int, SheetEdge] = {}
         self._forces = SheetForces.none()
@@ -122,11 +121,11 @@ class RubblePort:
 
     def _settled(self, pile: Callable[[], Pile]) -> Pile:
         try:
-            self.pile = pile()
+            settled = pile()
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
         self._forces = self._on_sheet()
-        return self.pile
+        return settled
 
     def _fronts(self, edges: dict[int, SheetEdge]) -> dict[int, tuple[float, float]]:
         """x of the structure's face at the sheet's underside, or of the sheet's front, and z of the underside [m]."""

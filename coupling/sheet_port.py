@@ -114,10 +114,9 @@ class SheetPort:
 
     def _power(self, rubble: SheetForces) -> float:
         """Power of the forces on the nodes that are still in the lattice, by their way in the window [W]."""
-        (t, state), on = self._start, self.sheet.present[rubble.nodes]
-        nodes = rubble.nodes[on]
-        way = self._position(nodes) - self._place(nodes, state, t)
-        return float((rubble.force[on] * way).sum()) / (self._t - t)
+        on = self.sheet.present[rubble.nodes]
+        _, way = self._way(rubble.nodes[on])
+        return float((rubble.force[on] * way).sum()) / (self._t - self._start[0])
 
     def _forces(self, rubble: SheetForces) -> tuple[Array, Array]:
         """The rubble's forces on all nodes: in plane (n, 2), and w with its rotations (n, 3)."""
@@ -293,9 +292,14 @@ class SheetPort:
 
     def _mean_motion(self, nodes: IntArray) -> tuple[Array, Array]:
         """The same at the start of the last window, and on average over it."""
+        begin, way = self._way(nodes)
+        return begin, (way / (self._t - self._start[0]))[:, ::2]
+
+    def _way(self, nodes: IntArray) -> tuple[Array, Array]:
+        """Where nodes were at the start of the last window, and how far they have come in it, (n, 3) both [m]."""
         t, state = self._start
         begin = self._place(nodes, state, t)
-        return begin, ((self._position(nodes) - begin) / (self._t - t))[:, ::2]
+        return begin, self._position(nodes) - begin
 
     def _check_apart(self, position: Array) -> None:
         """Refuses rows (m, 3), front first, of which one has passed the next."""

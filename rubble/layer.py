@@ -237,7 +237,8 @@ class RubbleLayer:
     def load_by_phase(self, phases: Sequence[int]) -> Array:
         """Sum of the mean forces of the blocks in each phase (len(phases), 3) [N]."""
         phase: IntArray = np.array([b.phase for b in self.blocks], np.int64)
-        return np.array([self.load_on_structure[phase == p].sum(axis=0) for p in phases]).reshape(-1, 3)
+        load = self.load_on_structure
+        return np.array([load[phase == p].sum(axis=0) for p in phases]).reshape(-1, 3)
 
     def sheet_forces(self, section: int) -> Array:
         """Mean force of the rubble on the sheet's nodes in a section over the last window (m, 2), x and z [N]."""

@@ -7,25 +7,11 @@ import pytest
 
 from cosim.baselines.beside import beside
 from cosim.baselines.methods import METHODS, design_loads
-from cosim.cli import main
 from cosim.report import write_report
 from cosim.run_data import RunData
 from cosim.scenario import load_scenario
 
 GLA, PLANE, FLOE = "icefloe_gla_upward_cone", "upward_plane", "van_vliet_2018_floe_165m"
-
-
-@pytest.fixture
-def cosim(capsys):
-    """cosim(*arguments) -> (exit code, stdout, stderr)"""
-
-    def call(*arguments):
-        with pytest.raises(SystemExit) as stop:
-            main([str(a) for a in arguments])
-        out = capsys.readouterr()
-        return stop.value.code, out.out, out.err
-
-    return call
 
 
 def test_the_scenario_of_icefloe_gives_its_logged_loads(cosim):

@@ -14,19 +14,6 @@ FLOE = "van_vliet_2018_floe_165m"
 
 
 @pytest.fixture
-def cosim(capsys):
-    """cosim(*arguments) -> (exit code, stdout, stderr)"""
-
-    def call(*arguments):
-        with pytest.raises(SystemExit) as stop:
-            main([str(a) for a in arguments])
-        out = capsys.readouterr()
-        return stop.value.code, out.out, out.err
-
-    return call
-
-
-@pytest.fixture
 def truncated(run_file, tmp_path):
     path = tmp_path / "killed.mcap"
     path.write_bytes(run_file.read_bytes()[:-5000])

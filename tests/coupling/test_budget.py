@@ -77,6 +77,17 @@ def test_a_pile_that_floats_under_a_lid():
     assert abs(budget["fz_residual"]) < 1e-9 * load[2]
 
 
+def press(sheet, down, ahead, windows, tolerance):
+    """An even load on the nodes (n,) [N]; in each window the terms add up to ``tolerance`` of it. Last reaction."""
+    for k in range(windows):
+        force_u, force_q = np.zeros((sheet.grid.nodes, 2)), np.zeros((sheet.grid.nodes, 3))
+        force_u[:, 0], force_q[:, 0] = ahead, -down
+        r = sheet.advance(0.05 * k, force_u, force_q, NoContact(), lambda nodes: None).reaction
+        parts = np.array([r.foundation, r.drag, r.inertia, r.held, r.applied])
+        assert np.abs(parts.sum(axis=0)).max() < tolerance * down.sum()
+    return r
+
+
 @pytest.mark.parametrize("long_step", [1, 4])
 def test_a_sheet_pressed_down_and_pushed_ahead(long_step):
     """Under an even load the foundation carries all of it; what pushes it ahead is held at its back edge."""
@@ -86,12 +97,7 @@ def test_a_sheet_pressed_down_and_pushed_ahead(long_step):
     held[grid.edge_nodes("x-")] = True
     sheet = Sheet(grid, ice, hrennikoff(ice), 0.05, held=held, damping=2e4, alpha=1e-2, long_step=long_step)
     down, ahead = 100.0 * grid.area, 50.0 * grid.area
-    for k in range(400):
-        force_u, force_q = np.zeros((grid.nodes, 2)), np.zeros((grid.nodes, 3))
-        force_u[:, 0], force_q[:, 0] = ahead, -down
-        r = sheet.advance(0.05 * k, force_u, force_q, NoContact(), lambda nodes: None).reaction
-        parts = np.array([r.foundation, r.drag, r.inertia, r.held, r.applied])
-        assert np.abs(parts.sum(axis=0)).max() < 1e-7 * down.sum()
+    r = press(sheet, down, ahead, windows=400, tolerance=1e-7)
     assert r.applied == pytest.approx((ahead.sum(), -down.sum()), rel=1e-12)
     assert r.foundation[1] == pytest.approx(down.sum(), rel=1e-4)
     assert r.held[0] == pytest.approx(-ahead.sum(), rel=1e-4)
@@ -105,12 +111,7 @@ def test_the_dynamic_engine_adds_up_within_its_quadrature():
     held[grid.edge_nodes("x-")] = True
     sheet = ExplicitSheet(grid, ice, hrennikoff(ice), 0.05, held=held, damping=500.0, alpha=1e-3)
     down, ahead = 100.0 * grid.area, 50.0 * grid.area
-    for k in range(20):
-        force_u, force_q = np.zeros((grid.nodes, 2)), np.zeros((grid.nodes, 3))
-        force_u[:, 0], force_q[:, 0] = ahead, -down
-        r = sheet.advance(0.05 * k, force_u, force_q, NoContact(), lambda nodes: None).reaction
-        parts = np.array([r.foundation, r.drag, r.inertia, r.held, r.applied])
-        assert np.abs(parts.sum(axis=0)).max() < 1e-3 * down.sum()
+    r = press(sheet, down, ahead, windows=20, tolerance=1e-3)
     assert r.foundation[1] > 0.1 * down.sum()
 
 
