@@ -16,13 +16,21 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = {"dry_tops": "#e6812b", "flooded_rubble": "#3a9b5c", "pressed_sheet": "#2f7ebc", "drag": "#8d6cab",
-           "inertia": "#b8bfc6", "held": "#5aa9c4", "staggering": "#e3c04b"}
+COLOURS = {
+    "dry_tops": "#e6812b",
+    "flooded_rubble": "#3a9b5c",
+    "pressed_sheet": "#2f7ebc",
+    "drag": "#8d6cab",
+    "inertia": "#b8bfc6",
+    "held": "#5aa9c4",
+    "staggering": "#e3c04b",
+}
 
 
 def rows(run: RunData) -> list[dict[str, Any]]:
     """The terms [MN] of Fx and Fz at both peaks, in the last window before each circumferential failure (the first of
-    each encounter), and on the mean of the run; empty without a budget."""
+    each encounter), and on the mean of the run; empty without a budget.
+    """
     if not run.budget or not len(run.t_ns):
         return []
     at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
@@ -39,16 +47,23 @@ def _row(run: RunData, when: str, time: str, axis: str, windows: slice) -> dict[
         return float(np.average(values[windows], weights=length)) / 1e6
 
     terms = {name.replace("_", " "): mean(run.budget[f"{axis}_{name}"]) for name in (*TERMS, "residual")}
-    return {"when": when, "time": time, "component": axis.capitalize(), "total": mean(run.component(axis)),
-            "terms": terms}
+    return {
+        "when": when,
+        "time": time,
+        "component": axis.capitalize(),
+        "total": mean(run.component(axis)),
+        "terms": terms,
+    }
 
 
 def largest_residual(run: RunData) -> dict[str, float]:
     """Largest residual of any window as a share of the run's largest load, by component."""
     if not run.budget or not len(run.t_ns):
         return {}
-    return {axis: float(np.abs(run.budget[f"{axis}_residual"]).max() / max(np.abs(run.component(axis)).max(), 1e-9))
-            for axis in AXES}
+    return {
+        axis: float(np.abs(run.budget[f"{axis}_residual"]).max() / max(np.abs(run.component(axis)).max(), 1e-9))
+        for axis in AXES
+    }
 
 
 def draw(figure: Figure, run: RunData) -> None:
@@ -75,6 +90,12 @@ def _focus(ax: Axes, terms: Array, total: Array) -> None:
     out = np.mean((up > high) | (down < low))
     ax.set_ylim(low, high)
     if out > 0.0:
-        ax.text(0.995, 0.03, f"stacks of {out:.1%} of the windows end outside", transform=ax.transAxes, ha="right",
-                fontsize=7)
+        ax.text(
+            0.995,
+            0.03,
+            f"stacks of {out:.1%} of the windows end outside",
+            transform=ax.transAxes,
+            ha="right",
+            fontsize=7,
+        )
     ax.grid(alpha=0.3)

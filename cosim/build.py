@@ -44,8 +44,15 @@ def build(scenario: Scenario) -> Scheduler:
             ledger.initial_mass += rubble.mass
     c = scenario.coupling
     iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
-    return Scheduler(port, rubble, ledger, scenario.window_ns, SCHEMES[c.scheme](iteration), build_steering(scenario),
-                     scenario.duration_ns)
+    return Scheduler(
+        port,
+        rubble,
+        ledger,
+        scenario.window_ns,
+        SCHEMES[c.scheme](iteration),
+        build_steering(scenario),
+        scenario.duration_ns,
+    )
 
 
 def build_steering(scenario: Scenario) -> Steering:
@@ -58,17 +65,31 @@ def build_steering(scenario: Scenario) -> Steering:
 
 def build_ice(scenario: Scenario) -> Ice:
     i, w = scenario.ice, scenario.water
-    test = None if i.beam_test is None else BeamTest(i.beam_test.length, i.beam_test.width, i.beam_test.failure_load,
-                                                     i.beam_test.factor)
-    return Ice(E=i.youngs_modulus, nu=i.poisson_ratio, h=i.thickness, rho_i=i.density, rho_w=w.density, g=w.gravity,
-               sigma_t=i.tensile_strength, sigma_f=i.flexural_strength, sigma_c=i.compressive_strength, beam_test=test)
+    test = (
+        None
+        if i.beam_test is None
+        else BeamTest(i.beam_test.length, i.beam_test.width, i.beam_test.failure_load, i.beam_test.factor)
+    )
+    return Ice(
+        E=i.youngs_modulus,
+        nu=i.poisson_ratio,
+        h=i.thickness,
+        rho_i=i.density,
+        rho_w=w.density,
+        g=w.gravity,
+        sigma_t=i.tensile_strength,
+        sigma_f=i.flexural_strength,
+        sigma_c=i.compressive_strength,
+        beam_test=test,
+    )
 
 
 def build_structure(scenario: Scenario) -> Structure:
     s = scenario.structure
     if s.kind == "plane":
-        return plane_slope(s.slope, top=s.top, toe_depth=DEEP if s.toe_depth is None else s.toe_depth,
-                           breaking=s.breaking)
+        return plane_slope(
+            s.slope, top=s.top, toe_depth=DEEP if s.toe_depth is None else s.toe_depth, breaking=s.breaking
+        )
     return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth, breaking=s.breaking)
 
 
@@ -93,26 +114,47 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
     r, i = scenario.rubble, scenario.ice
     physics = RubblePhysics(
-        rho_i=i.density, rho_w=scenario.water.density, g=scenario.water.gravity, mu_ice_ice=r.friction_ice_ice,
-        mu_structure=r.friction_structure, restitution=r.restitution, form_drag=r.form_drag, skin_drag=r.skin_drag,
-        added_mass=r.added_mass, added_inertia=r.added_mass, thickness=i.thickness, iterations=r.iterations,
-        substep=r.substep, sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2,
-        backfill=r.backfill, filling_time=r.filling_time, feed_speed=scenario.drift.velocity,
-        contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength)
+        rho_i=i.density,
+        rho_w=scenario.water.density,
+        g=scenario.water.gravity,
+        mu_ice_ice=r.friction_ice_ice,
+        mu_structure=r.friction_structure,
+        restitution=r.restitution,
+        form_drag=r.form_drag,
+        skin_drag=r.skin_drag,
+        added_mass=r.added_mass,
+        added_inertia=r.added_mass,
+        thickness=i.thickness,
+        iterations=r.iterations,
+        substep=r.substep,
+        sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2,
+        backfill=r.backfill,
+        filling_time=r.filling_time,
+        feed_speed=scenario.drift.velocity,
+        contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,
+    )
     pitch = r.columns_per_section * grid.d
     crest = float(structure.face_x(0.0, structure.top))  # of a plane that leans back, over which ice may ride
     reach = float(structure.radius(0.0)) if structure.revolved else max(crest, 0.0)
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
     domain = Domain(x_max=reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
-    return RubblePort(structure, physics, pitch=pitch, origin=grid.y0 + 0.5 * (pitch - grid.d),
-                      columns_per_section=r.columns_per_section, domain=domain, threads=r.threads)
+    return RubblePort(
+        structure,
+        physics,
+        pitch=pitch,
+        origin=grid.y0 + 0.5 * (pitch - grid.d),
+        columns_per_section=r.columns_per_section,
+        domain=domain,
+        threads=r.threads,
+    )
 
 
 def run_info(scenario: Scenario) -> RunInfo:
     """What stays constant over a run, for observers."""
     mesh = structure_mesh(build_structure(scenario), 2.0 * scenario.sheet.width)
-    return RunInfo(scenario, mesh, tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns,
-                   scenario.window_ns)
+    return RunInfo(
+        scenario, mesh, tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns, scenario.window_ns
+    )
 
 
 def structure_mesh(structure: Structure, width: float, around: int = 96) -> tuple[Array, IntArray]:
@@ -130,6 +172,7 @@ def structure_mesh(structure: Structure, width: float, around: int = 96) -> tupl
     rows, columns = points.shape[:2]
     i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
     a = (i * columns + j).ravel()
-    triangles = np.concatenate((np.column_stack((a, a + 1, a + columns)),
-                                np.column_stack((a + 1, a + columns + 1, a + columns))))
+    triangles = np.concatenate(
+        (np.column_stack((a, a + 1, a + columns)), np.column_stack((a + 1, a + columns + 1, a + columns)))
+    )
     return points.reshape(-1, 3), triangles.astype(np.int64)

@@ -27,9 +27,17 @@ from cosim import messages, scenes, shapes
 from coupling.interface import Array, BlockTable, Event, Frame, IntArray, Phase, SheetView
 
 SCHEMAS: dict[str, Any] = {
-    "/structure/scene": SceneUpdate, "/structure/points": PointCloud, "/tf": FrameTransforms,
-    "/load/structure": messages.Load, "/ledger": messages.Ledger, "/events": messages.Event, "/log": Log,
-    "/ice/nodes": PointCloud, "/ice/sheet": SceneUpdate, "/rubble/scene": SceneUpdate, "/rubble/outline": PointCloud,
+    "/structure/scene": SceneUpdate,
+    "/structure/points": PointCloud,
+    "/tf": FrameTransforms,
+    "/load/structure": messages.Load,
+    "/ledger": messages.Ledger,
+    "/events": messages.Event,
+    "/log": Log,
+    "/ice/nodes": PointCloud,
+    "/ice/sheet": SceneUpdate,
+    "/rubble/scene": SceneUpdate,
+    "/rubble/outline": PointCloud,
     "/load/budget": messages.Ledger,
 }
 Packed = tuple[str, bytes]  #: topic and serialised message
@@ -64,8 +72,9 @@ def event(item: Event) -> Iterator[Packed]:
     """An event as data and as a line of the log."""
     numbers = dict(zip(("fx", "fy", "fz", "x", "y", "z"), (*item.force, *item.position), strict=True))
     numbers |= {"length": item.length, "area": item.area}
-    message = messages.Event(kind=item.kind, cells=int(item.cells), text=item.text,
-                             **{name: float(value) for name, value in numbers.items()})
+    message = messages.Event(
+        kind=item.kind, cells=int(item.cells), text=item.text, **{name: float(value) for name, value in numbers.items()}
+    )
     messages.stamp(message.stamp, item.t_ns)
     yield "/events", scenes.as_bytes(message)
     yield log(item.t_ns, f"{item.kind}: {item.text}", item.kind)

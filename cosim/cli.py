@@ -17,8 +17,12 @@ import typer
 
 from cosim.errors import FailedError, InputError
 
-app = typer.Typer(name="cosim", add_completion=False, pretty_exceptions_enable=False,
-                  help="Ice loads on sloping structures: a lattice that breaks, coupled with rubble that slides.")
+app = typer.Typer(
+    name="cosim",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Ice loads on sloping structures: a lattice that breaks, coupled with rubble that slides.",
+)
 
 ScenarioArgument = Annotated[str, typer.Argument(help="scenario folder, TOML file, or name from `cosim list`")]
 RunArgument = Annotated[Path, typer.Argument(help="recording (.mcap)")]
@@ -177,10 +181,16 @@ def recover(
 
     output = _writable(output or recording.with_suffix(".recovered.mcap"))
     data = rescue(recording, output)
-    content = {"run": recording.name, "recording": str(output), "windows": len(data.t_ns),
-               "simulated_s": float(data.t[-1]), "events": len(data.events)}
+    content = {
+        "run": recording.name,
+        "recording": str(output),
+        "windows": len(data.t_ns),
+        "simulated_s": float(data.t[-1]),
+        "events": len(data.events),
+    }
     _print_json(content) if as_json else print_line(
-        f"{output}: {content['windows']} windows, {content['simulated_s']:g} s, {content['events']} events")
+        f"{output}: {content['windows']} windows, {content['simulated_s']:g} s, {content['events']} events"
+    )
 
 
 @app.command("list")
@@ -190,8 +200,15 @@ def list_scenarios(as_json: JsonOption = False) -> None:
     from cosim.scenario import find_scenarios, load_scenario
 
     found = [load_scenario(folder) for folder in find_scenarios()]
-    rows = [{"name": s.name, "title": s.title, "description": s.model.scenario.description,
-             "duration_s": s.duration_ns / 1e9} for s in found]
+    rows = [
+        {
+            "name": s.name,
+            "title": s.title,
+            "description": s.model.scenario.description,
+            "duration_s": s.duration_ns / 1e9,
+        }
+        for s in found
+    ]
     _print_json({"scenarios": rows}) if as_json else print_scenarios(rows)
 
 

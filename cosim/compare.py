@@ -24,7 +24,7 @@ class Row:
 
 
 def ratio(simulated: float | None, value: Range | None) -> float | None:
-    """simulated / value; 1 inside a range."""
+    """Simulated / value; 1 inside a range."""
     if simulated is None or value is None:
         return None
     nearest = min(max(simulated, value[0]), value[1])
@@ -33,6 +33,7 @@ def ratio(simulated: float | None, value: Range | None) -> float | None:
 
 def compare(run: RunData, reference: Reference) -> list[Row]:
     """Every feature of the reference, taken from the run."""
+
     def value(f: Feature) -> float | None:
         return QUANTITIES[f.quantity](run if f.over is None else run.averaged(f.over), **f.arguments)
 
@@ -54,18 +55,30 @@ def to_json(run: RunData, name: str, rows: list[Row]) -> dict[str, Any]:
 
     ``peaks`` holds the load and the share of each phase at the peak of Fx, Fz and the resultant.
     """
-    return {"run": run.name, "reference": name, "features": [_json_row(row) for row in rows], "series": None,
-            "peaks": shares_at_peak(run)}
+    return {
+        "run": run.name,
+        "reference": name,
+        "features": [_json_row(row) for row in rows],
+        "series": None,
+        "peaks": shares_at_peak(run),
+    }
 
 
 def _json_row(row: Row) -> dict[str, Any]:
     f = row.feature
     return {
-        "name": f.name, "simulated": row.simulated, "measured": _middle(f.measured),
-        "ratio": ratio(row.simulated, f.measured), "source": f.source, "unit": f.unit,
+        "name": f.name,
+        "simulated": row.simulated,
+        "measured": _middle(f.measured),
+        "ratio": ratio(row.simulated, f.measured),
+        "source": f.source,
+        "unit": f.unit,
         "measured_range": list(f.measured) if f.measured and f.measured[0] != f.measured[1] else None,
-        "thesis": _middle(f.thesis), "thesis_ratio": ratio(row.simulated, f.thesis),
-        "quantity": f.quantity, "arguments": f.arguments, "over": f.over,
+        "thesis": _middle(f.thesis),
+        "thesis_ratio": ratio(row.simulated, f.thesis),
+        "quantity": f.quantity,
+        "arguments": f.arguments,
+        "over": f.over,
     }
 
 

@@ -29,9 +29,15 @@ class ProgressBar:
 
     def __init__(self, console: Console | None = None) -> None:
         self._progress = Progress(
-            TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[now]}"),
-            TextColumn("{task.fields[rate]}"), TextColumn("remaining"), TimeRemainingColumn(),
-            console=console or stderr, transient=True)
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.fields[now]}"),
+            TextColumn("{task.fields[rate]}"),
+            TextColumn("remaining"),
+            TimeRemainingColumn(),
+            console=console or stderr,
+            transient=True,
+        )
         self._task: TaskID | None = None
 
     def on_start(self, run_info: RunInfo) -> None:
@@ -45,8 +51,9 @@ class ProgressBar:
             return
         t = frame.t_ns / NS
         wall = max(time.monotonic() - self._begin, 1e-9)
-        self._progress.update(self._task, completed=t, now=f"{t:6.1f} of {self._duration:g} s",
-                              rate=f"{t / wall:.2f} x real time")
+        self._progress.update(
+            self._task, completed=t, now=f"{t:6.1f} of {self._duration:g} s", rate=f"{t / wall:.2f} x real time"
+        )
         for line in event_lines(frame):
             self._progress.console.print(line, highlight=False, markup=False, soft_wrap=True)
 
@@ -59,16 +66,21 @@ def event_lines(frame: Frame) -> list[str]:
     count = Counter(event.kind for event in frame.events)
     first = {event.kind: event for event in reversed(frame.events)}
     more = {kind: f" (and {n - 1} more)" if n > 1 else "" for kind, n in count.items()}
-    return [f"{event.t_ns / NS:8.2f} s  {kind}: {event.text}{more[kind]}"
-            for kind, event in sorted(first.items(), key=lambda item: item[1].t_ns)]
+    return [
+        f"{event.t_ns / NS:8.2f} s  {kind}: {event.text}{more[kind]}"
+        for kind, event in sorted(first.items(), key=lambda item: item[1].t_ns)
+    ]
 
 
 def run_tables(result: dict[str, Any]) -> list[Table]:
     """End of a run: peaks by phase, and the events."""
     peaks = new_table("load", "Fx [MN]", "at [s]", "Fz [MN]", "at [s]", "F [MN]", "at [s]", title="Peaks")
     for name, values in [("total", result["peaks"]), *((p, result["peaks_by_phase"][p]) for p in PHASES)]:
-        cells = [number(values[key][what], scale) for key in ("fx", "fz", "f")
-                 for what, scale in (("value", 1e-6), ("time", 1.0))]
+        cells = [
+            number(values[key][what], scale)
+            for key in ("fx", "fz", "f")
+            for what, scale in (("value", 1e-6), ("time", 1.0))
+        ]
         peaks.add_row(name, *cells)
     tables = [peaks]
     if result["events"]:
@@ -80,8 +92,7 @@ def events_table(events: list[dict[str, Any]], most: int = 25) -> Table:
     """Events with the load at their time; a long list ends with how many are left out."""
     table = new_table("at [s]", "event", "Fx [MN]", "Fz [MN]", "cells", title="Events")
     for e in events[:most]:
-        table.add_row(number(e["time"], 1.0), e["kind"], number(e["fx"], 1e-6), number(e["fz"], 1e-6),
-                      str(e["cells"]))
+        table.add_row(number(e["time"], 1.0), e["kind"], number(e["fx"], 1e-6), number(e["fz"], 1e-6), str(e["cells"]))
     if len(events) > most:
         table.add_row("", f"... {len(events) - most} more", "", "", "")
     return table
@@ -99,8 +110,11 @@ def compare_cells(row: Row) -> tuple[str, ...]:
     """Name, simulated, thesis, ratio, measured, ratio and unit of a feature, as text."""
     f = row.feature
     factor, unit = SCALES.get(f.unit, (1.0, f.unit))
-    beside = [text for value in (f.thesis, f.measured)
-              for text in (_range(value, factor), number(ratio(row.simulated, value), 1.0))]
+    beside = [
+        text
+        for value in (f.thesis, f.measured)
+        for text in (_range(value, factor), number(ratio(row.simulated, value), 1.0))
+    ]
     return f.name, number(row.simulated, factor), *beside, unit
 
 
@@ -109,8 +123,11 @@ def ledger_lines(ledger: dict[str, float | None]) -> list[str]:
     known = {name: value for name, value in ledger.items() if value is not None}
     errors = [f"{name} {value:.2g}" for name, value in known.items() if name.endswith(("_error", "residual", "_mass"))]
     least = 0.01 * abs(known.get("drift_work", 0.0))
-    terms = [(name, value) for name, value in known.items()
-             if (name in STORES or name.endswith("_loss")) and abs(value) >= max(least, 1.0)]
+    terms = [
+        (name, value)
+        for name, value in known.items()
+        if (name in STORES or name.endswith("_loss")) and abs(value) >= max(least, 1.0)
+    ]
     lines = ["ledger: " + ", ".join(errors)]
     if "drift_work" in known:
         terms.sort(key=lambda term: -abs(term[1]))
@@ -124,19 +141,26 @@ def print_run(result: dict[str, Any]) -> None:
     for table in run_tables(result):
         stdout.print(table)
     ledger = "\n".join(ledger_lines(result["ledger"]))
-    stdout.print(f"{result['simulated_s']:g} s simulated in {result['wall_s']:.1f} s "
-                 f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, "
-                 f"{result['blocks']} blocks\n{ledger}", highlight=False)
+    stdout.print(
+        f"{result['simulated_s']:g} s simulated in {result['wall_s']:.1f} s "
+        f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, "
+        f"{result['blocks']} blocks\n{ledger}",
+        highlight=False,
+    )
     if result["recording"]:
         stdout.print(f"recording: {result['recording']}", highlight=False, soft_wrap=True)
 
 
 def print_info(content: dict[str, Any]) -> None:
     """`cosim info`."""
-    stdout.print(f"{content['title']} ({content['scenario']}), version {content['version']}, seed {content['seed']}\n"
-                 f"{content['simulated_s']:g} of {content['duration_s']:g} s, {content['windows']} windows, "
-                 f"overrides: {' '.join(content['overrides']) or 'none'}", highlight=False, soft_wrap=True,
-                 markup=False)
+    stdout.print(
+        f"{content['title']} ({content['scenario']}), version {content['version']}, seed {content['seed']}\n"
+        f"{content['simulated_s']:g} of {content['duration_s']:g} s, {content['windows']} windows, "
+        f"overrides: {' '.join(content['overrides']) or 'none'}",
+        highlight=False,
+        soft_wrap=True,
+        markup=False,
+    )
     for table in run_tables(content):
         stdout.print(table)
 

@@ -15,8 +15,9 @@ def print_baseline(title: str, methods: dict[str, dict[str, Any]]) -> None:
     stdout.print(table)
     for found in methods.values():
         print_line(f"{found['title']}: {found['source']}; {found['caveat']}")
-    assumed = {key: text for found in methods.values() if "refused" not in found
-               for key, text in found["assumed"].items()}
+    assumed = {
+        key: text for found in methods.values() if "refused" not in found for key, text in found["assumed"].items()
+    }
     if assumed:
         print_line("assumed, because [baseline] of the scenario does not say:")
     for key, text in assumed.items():
@@ -27,8 +28,12 @@ def cells(found: dict[str, Any]) -> tuple[str, ...]:
     """Title, Fx, Fz and share of breaking of a method, as text."""
     if "refused" in found:
         return found["title"], "-", "-", "-"
-    return (found["title"], number(found["fx"], 1e-6), number(found["fz"], 1e-6),
-            f"{100.0 * found['breaking_share']:.0f} %")
+    return (
+        found["title"],
+        number(found["fx"], 1e-6),
+        number(found["fz"], 1e-6),
+        f"{100.0 * found['breaking_share']:.0f} %",
+    )
 
 
 def _terms(found: dict[str, Any]) -> str:
@@ -41,8 +46,16 @@ def beside_rows(design: dict[str, Any]) -> list[tuple[str, ...]]:
     """Rows of the table of a run: formula, Fx, simulated / design, Fz, simulated / design, share of breaking."""
     peak = design["simulated"]
     share = peak["breaking_share"]
-    rows: list[tuple[str, ...]] = [("simulated peak", number(peak["fx"], 1e-6), "", number(peak["fz"], 1e-6), "",
-             "-" if share is None else f"{100.0 * share:.0f} %")]
+    rows: list[tuple[str, ...]] = [
+        (
+            "simulated peak",
+            number(peak["fx"], 1e-6),
+            "",
+            number(peak["fz"], 1e-6),
+            "",
+            "-" if share is None else f"{100.0 * share:.0f} %",
+        )
+    ]
     for found in design.get("methods", {}).values():
         title, fx, fz, breaking = cells(found)
         rows.append((title, fx, number(found.get("ratio_fx"), 1.0), fz, number(found.get("ratio_fz"), 1.0), breaking))

@@ -15,8 +15,9 @@ from cosim.run_data import RunData
 from coupling.interface import NS, Array
 
 
-def largest_load(run: RunData, component: str = "fx", phase: str | None = None, begin: float = 0.0,
-                 end: float | None = None) -> float | None:
+def largest_load(
+    run: RunData, component: str = "fx", phase: str | None = None, begin: float = 0.0, end: float | None = None
+) -> float | None:
     """Largest load of the windows that end within ``begin`` to ``end``, both from first contact [s] [N]."""
     start = first_contact(run)
     if start is None:
@@ -26,13 +27,14 @@ def largest_load(run: RunData, component: str = "fx", phase: str | None = None, 
     return _largest(run.component(component, phase)[chosen]) if chosen.any() else None
 
 
-def encounter_load(run: RunData, n: int = 1, event: Kinds = "circumferential", component: str = "fx",
-                   phase: str | None = None) -> float | None:
+def encounter_load(
+    run: RunData, n: int = 1, event: Kinds = "circumferential", component: str = "fx", phase: str | None = None
+) -> float | None:
     """Largest load of the n-th encounter, from first touch or last drop to the drop after its event [N]."""
     found = encounters(run, event)
     if not 1 <= n <= len(found):
         return None
-    return _largest(run.component(component, phase)[found[n - 1].begin:found[n - 1].end + 1])
+    return _largest(run.component(component, phase)[found[n - 1].begin : found[n - 1].end + 1])
 
 
 def _largest(load: Array) -> float:
@@ -48,8 +50,13 @@ def encounter_time(run: RunData, n: int = 1, event: Kinds = "circumferential") -
     return float(run.t_ns[found[n - 1].event] - run.begin_ns[found[n - 1].begin]) / NS
 
 
-def mean_load(run: RunData, component: str = "fx", phase: str | None = None, after: Kinds | None = None,
-              before: Kinds | None = None) -> float | None:
+def mean_load(
+    run: RunData,
+    component: str = "fx",
+    phase: str | None = None,
+    after: Kinds | None = None,
+    before: Kinds | None = None,
+) -> float | None:
     """Mean from first contact, or the first event ``after``, to the end or the first event ``before`` [N]."""
     begin, end = between(run, after, before)
     start = first_contact(run)
@@ -60,8 +67,14 @@ def mean_load(run: RunData, component: str = "fx", phase: str | None = None, aft
     return float(np.average(run.component(component, phase)[chosen], weights=length)) if chosen.any() else None
 
 
-def cycle_period(run: RunData, component: str = "fx", after: Kinds | None = None, before: Kinds | None = None,
-                 prominence: float = 0.2, smooth: float = 0.5) -> float | None:
+def cycle_period(
+    run: RunData,
+    component: str = "fx",
+    after: Kinds | None = None,
+    before: Kinds | None = None,
+    prominence: float = 0.2,
+    smooth: float = 0.5,
+) -> float | None:
     """Median time between the peaks of the load [s]; for cycles too few or too uneven for `load_period`.
 
     A peak stands out by ``prominence`` of the record's largest load, after a running mean over ``smooth`` [s]. None

@@ -57,7 +57,7 @@ def build_up_time(run: RunData, event: Kinds, component: str = "fx") -> float | 
     load = run.component(component)[run.t_ns <= found.t_ns]
     if not len(load):
         return None
-    low = np.flatnonzero(load[:load.argmax()] < 0.1 * limit)
+    low = np.flatnonzero(load[: load.argmax()] < 0.1 * limit)
     begin = run.t_ns[low[-1]] if len(low) else run.t_ns[0]
     return float(found.t_ns - begin) / NS
 
@@ -78,8 +78,12 @@ def level_between_peaks(run: RunData, component: str = "fx", share: float = 0.05
     return float(np.average(total[between], weights=length[between])) if between.any() else None
 
 
-def load_period(run: RunData, component: str = "fx", after: Kinds | None = None, before: Kinds | None = None,
-                ) -> float | None:
+def load_period(
+    run: RunData,
+    component: str = "fx",
+    after: Kinds | None = None,
+    before: Kinds | None = None,
+) -> float | None:
     """Dominant period of the load cycles [s]: largest line of the spectrum with at least three periods in the record.
 
     The record runs between the first events ``after`` and ``before``; its linear trend is taken off and a Hann window
@@ -132,21 +136,41 @@ def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
         peak = float(total[k])
         parts = run.load[k] @ (run.load[k].sum(axis=0) / peak if peak else np.zeros(3))
         loads = {p: float(parts[i] if name == "f" else run.component(name, p)[k]) for i, p in enumerate(PHASES)}
-        out[name] = {"value": peak, "time": float(run.t[k]), "phases": loads,
-                     "shares": {p: v / peak if peak else 0.0 for p, v in loads.items()}}
+        out[name] = {
+            "value": peak,
+            "time": float(run.t[k]),
+            "phases": loads,
+            "shares": {p: v / peak if peak else 0.0 for p, v in loads.items()},
+        }
     return out
 
 
 def summary(run: RunData) -> dict[str, Any]:
     """What a recording holds, as `cosim info --json` prints it."""
     return {
-        "run": run.name, "scenario": run.metadata["scenario"], "title": run.metadata["title"],
-        "version": run.metadata["version"], "seed": int(run.metadata["seed"]), "overrides": run.overrides,
-        "simulated_s": float(run.t[-1]) if len(run.t) else 0.0, "duration_s": int(run.metadata["duration_ns"]) / NS,
-        "windows": len(run.t), "peaks": peaks(run), "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
-        "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fz": e.force[2], "cells": e.cells,
-                    "length": e.length, "area": e.area}
-                   for e in run.events],
+        "run": run.name,
+        "scenario": run.metadata["scenario"],
+        "title": run.metadata["title"],
+        "version": run.metadata["version"],
+        "seed": int(run.metadata["seed"]),
+        "overrides": run.overrides,
+        "simulated_s": float(run.t[-1]) if len(run.t) else 0.0,
+        "duration_s": int(run.metadata["duration_ns"]) / NS,
+        "windows": len(run.t),
+        "peaks": peaks(run),
+        "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
+        "events": [
+            {
+                "time": e.t_ns / NS,
+                "kind": e.kind,
+                "fx": e.force[0],
+                "fz": e.force[2],
+                "cells": e.cells,
+                "length": e.length,
+                "area": e.area,
+            }
+            for e in run.events
+        ],
         "ledger": {name: float(values[-1]) for name, values in run.ledger.items()},
     }
 
@@ -154,7 +178,23 @@ def summary(run: RunData) -> dict[str, Any]:
 #: the functions that a reference file may name
 QUANTITIES: dict[str, Callable[..., float | None]] = {
     f.__name__: f
-    for f in (event_load, event_time, peak_load, peak_time, build_up_time, level_between_peaks, load_period,
-              rubble_volume, cycles.largest_load, cycles.encounter_load, cycles.encounter_time, cycles.mean_load,
-              cycles.cycle_period, cycles.piece_length, cycles.piece_area, cycles.feed_rate, cycles.clearing_rate)
+    for f in (
+        event_load,
+        event_time,
+        peak_load,
+        peak_time,
+        build_up_time,
+        level_between_peaks,
+        load_period,
+        rubble_volume,
+        cycles.largest_load,
+        cycles.encounter_load,
+        cycles.encounter_time,
+        cycles.mean_load,
+        cycles.cycle_period,
+        cycles.piece_length,
+        cycles.piece_area,
+        cycles.feed_rate,
+        cycles.clearing_rate,
+    )
 }

@@ -20,8 +20,13 @@ _Field = descriptor_pb2.FieldDescriptorProto
 def _message(file: Any, name: str, fields: list[tuple[str, int]], repeated: tuple[str, ...] = ()) -> None:
     """Add a message whose first field is ``stamp``; ``fields`` are (name, protobuf type)."""
     message = file.message_type.add(name=name)
-    message.field.add(name="stamp", number=1, type=_Field.TYPE_MESSAGE, label=_Field.LABEL_OPTIONAL,
-                      type_name=".google.protobuf.Timestamp")
+    message.field.add(
+        name="stamp",
+        number=1,
+        type=_Field.TYPE_MESSAGE,
+        label=_Field.LABEL_OPTIONAL,
+        type_name=".google.protobuf.Timestamp",
+    )
     for number, (field, kind) in enumerate(fields, start=2):
         label = _Field.LABEL_REPEATED if field in repeated else _Field.LABEL_OPTIONAL
         message.field.add(name=field, number=number, type=kind, label=label)
@@ -32,14 +37,28 @@ def _build() -> dict[str, Any]:
     file = descriptor_pb2.FileDescriptorProto(name="cosim.proto", package="cosim", syntax="proto3")
     file.dependency.append(timestamp_pb2.DESCRIPTOR.name)
     _message(file, "Load", [(name, number) for name in LOAD_FIELDS])
-    _message(file, "Event", [("kind", text), *((axis, number) for axis in AXES), ("cells", whole),
-                             ("x", number), ("y", number), ("z", number), ("text", text), ("length", number),
-                             ("area", number)])
+    _message(
+        file,
+        "Event",
+        [
+            ("kind", text),
+            *((axis, number) for axis in AXES),
+            ("cells", whole),
+            ("x", number),
+            ("y", number),
+            ("z", number),
+            ("text", text),
+            ("length", number),
+            ("area", number),
+        ],
+    )
     _message(file, "Ledger", [("name", text), ("value", number)], repeated=("name", "value"))
     pool = descriptor_pool.Default()
     pool.Add(file)
-    return {name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}"))
-            for name in ("Load", "Event", "Ledger")}
+    return {
+        name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}"))
+        for name in ("Load", "Event", "Ledger")
+    }
 
 
 _classes = _build()

@@ -60,7 +60,8 @@ def first_contact(run: RunData) -> float | None:
 
 def between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[int | None, int]:
     """Times of the first events ``after`` and ``before`` [ns]; without them the run's start and end; None: no such
-    event ``after``."""
+    event ``after``.
+    """
     first = first_event(run, after) if after else None
     last = first_event(run, before) if before else None
     begin = (first.t_ns if first else None) if after else 0
@@ -69,7 +70,8 @@ def between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[in
 
 def encounters(run: RunData, event: Kinds = "circumferential", component: str = "f") -> list[Encounter]:
     """All encounters of a run. The drop ends in the first window below `DROP` of the largest load until the event, or,
-    if the load stays higher, in the lowest one before the next event."""
+    if the load stays higher, in the lowest one before the next event.
+    """
     load, begin = run.component(component), 0
     found: list[Encounter] = []
     start = first_contact(run)
@@ -77,12 +79,12 @@ def encounters(run: RunData, event: Kinds = "circumferential", component: str = 
         begin = int(np.searchsorted(run.t_ns, round(start * NS), side="right"))
     at = sorted({int(np.searchsorted(run.t_ns, e.t_ns)) for e in events_of(run, event)} - {len(load)})
     for k, now in enumerate(at):
-        if found and (now <= found[-1].end or not _built_up(load[begin:now + 1])):
+        if found and (now <= found[-1].end or not _built_up(load[begin : now + 1])):
             found[-1] = replace(found[-1], end=max(found[-1].end, now))  # it goes on breaking
             begin = found[-1].end + 1
             continue
         until = at[k + 1] if k + 1 < len(at) else len(load)
-        low = np.flatnonzero(load[now:] < DROP * load[begin:now + 1].max())
+        low = np.flatnonzero(load[now:] < DROP * load[begin : now + 1].max())
         end = now + (int(low[0]) if len(low) else int(load[now:until].argmin()))
         found.append(Encounter(begin, now, end))
         begin = end + 1
@@ -92,4 +94,4 @@ def encounters(run: RunData, event: Kinds = "circumferential", component: str = 
 def _built_up(load: Array) -> bool:
     """Whether a load has risen to its largest value from less than `DROP` of it."""
     top = int(load.argmax())
-    return bool(load[:top + 1].min() < DROP * load[top])
+    return bool(load[: top + 1].min() < DROP * load[top])

@@ -54,15 +54,20 @@ def node_records(data: bytes) -> Any:
 def triangle_lists(data: bytes) -> list[tuple[Array, IntArray]]:
     """Points and triangles of every list of a scene."""
     entity = SceneUpdate.FromString(data).entities[0]
-    return [(np.array([(p.x, p.y, p.z) for p in item.points]).reshape(-1, 3),
-             np.array(item.indices, np.int64).reshape(-1, 3)) for item in entity.triangles]
+    return [
+        (
+            np.array([(p.x, p.y, p.z) for p in item.points]).reshape(-1, 3),
+            np.array(item.indices, np.int64).reshape(-1, 3),
+        )
+        for item in entity.triangles
+    ]
 
 
 def sheet_quads(data: bytes) -> IntArray:
     """The intact cells of a sheet's mesh: its first triangles are the top faces, (a, b, c) of all, then (a, c, d)."""
     faces = np.array(SceneUpdate.FromString(data).entities[0].triangles[0].indices, np.int64).reshape(-1, 3)
     k = _count_of_cells(faces)
-    return np.concatenate([faces[:k], faces[k:2 * k, 2:]], axis=1)
+    return np.concatenate([faces[:k], faces[k : 2 * k, 2:]], axis=1)
 
 
 def _count_of_cells(faces: IntArray) -> int:
@@ -86,19 +91,19 @@ def _sheet(t_ns: int, nodes: Any, quads: IntArray, thickness: float) -> Mesh:
 def _sheet_normals(vertices: Array, n: int) -> Array:
     """Up on the top, down on the underside, level on the side faces (four vertices each)."""
     normals = np.zeros_like(vertices)
-    normals[:n, 2], normals[n:2 * n, 2] = 1, -1
-    corner = vertices[2 * n:].reshape(-1, 4, 3)
+    normals[:n, 2], normals[n : 2 * n, 2] = 1, -1
+    corner = vertices[2 * n :].reshape(-1, 4, 3)
     along = corner[:, 1] - corner[:, 0]
     level = np.stack([along[:, 1], -along[:, 0], np.zeros(len(along))], axis=1)
     level /= np.maximum(np.linalg.norm(level, axis=1, keepdims=True), 1e-12)
-    normals[2 * n:] = np.repeat(level, 4, axis=0)
+    normals[2 * n :] = np.repeat(level, 4, axis=0)
     return normals
 
 
 def _shade(rgb: Array, n: int) -> Array:
     """Side faces a little darker, so that cracks and the edge are seen."""
     out = rgb.copy()
-    out[2 * n:] *= 0.7
+    out[2 * n :] *= 0.7
     return out
 
 

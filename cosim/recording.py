@@ -130,12 +130,19 @@ def run_metadata(info: RunInfo) -> dict[str, str]:
 
     scenario = info.scenario
     return {
-        "format": "1", "version": version("brash-ice"), "scenario": scenario.name, "title": scenario.title,
-        "seed": str(scenario.seed), "overrides": json.dumps(list(scenario.overrides)),
-        "nodes": json.dumps(list(info.sheet_shape)), "spacing_m": repr(float(info.d)),
-        "thickness_m": repr(float(scenario.ice.thickness)), "drift_m_s": repr(float(scenario.drift.velocity)),
+        "format": "1",
+        "version": version("brash-ice"),
+        "scenario": scenario.name,
+        "title": scenario.title,
+        "seed": str(scenario.seed),
+        "overrides": json.dumps(list(scenario.overrides)),
+        "nodes": json.dumps(list(info.sheet_shape)),
+        "spacing_m": repr(float(info.d)),
+        "thickness_m": repr(float(scenario.ice.thickness)),
+        "drift_m_s": repr(float(scenario.drift.velocity)),
         "ice_density": repr(float(scenario.ice.density)),
-        "duration_ns": str(info.duration_ns), "window_ns": str(info.window_ns),
+        "duration_ns": str(info.duration_ns),
+        "window_ns": str(info.window_ns),
     }
 
 
@@ -203,8 +210,10 @@ def _records(path: Path, until_damage: bool = False) -> Iterator[McapRecord]:
             except Exception:  # the reader raises what its parts raise: end of file, length, CRC, decompression
                 if until_damage:
                     return
-                raise RecordingError(f"{path}: recording is truncated or damaged; "
-                                     f"run `cosim recover {path} -o {path.stem}.recovered.mcap`") from None
+                raise RecordingError(
+                    f"{path}: recording is truncated or damaged; "
+                    f"run `cosim recover {path} -o {path.stem}.recovered.mcap`"
+                ) from None
             yield record
 
 

@@ -80,8 +80,16 @@ def _feature(entry: dict[str, Any], origin: str) -> Feature:
     arguments = {key: value for key, value in entry.items() if key not in OWN_KEYS}
     _check_arguments(where, quantity, arguments)
     ranges = {key: _range(f"{where}: {key}", entry.get(key), entry["unit"]) for key in ("thesis", "measured")}
-    return Feature(entry["name"], quantity, entry["unit"], entry["source"], arguments,
-                   tolerance=entry.get("tolerance"), over=_time(f"{where}: over", entry.get("over")), **ranges)
+    return Feature(
+        entry["name"],
+        quantity,
+        entry["unit"],
+        entry["source"],
+        arguments,
+        tolerance=entry.get("tolerance"),
+        over=_time(f"{where}: over", entry.get("over")),
+        **ranges,
+    )
 
 
 def _time(where: str, value: Any) -> float | None:

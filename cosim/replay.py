@@ -28,8 +28,10 @@ from coupling.interface import NS, PHASES, Phase
 APPLICATION = "cosim"
 TIMELINE = "simulated_time"
 TOTAL_RGB = (235, 235, 235)
-NO_DRIVER = ("the viewer found no Vulkan driver for a picture without screen; "
-             "install one, on Debian: apt-get install mesa-vulkan-drivers")
+NO_DRIVER = (
+    "the viewer found no Vulkan driver for a picture without screen; "
+    "install one, on Debian: apt-get install mesa-vulkan-drivers"
+)
 
 
 def save(recording: Path, out: Path) -> None:
@@ -59,8 +61,9 @@ def serve(recording: Path) -> None:
             time.sleep(1)
 
 
-def screenshot(recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050),
-               settle: float = 6.0) -> list[str]:
+def screenshot(
+    recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050), settle: float = 6.0
+) -> list[str]:
     """Write a picture at a simulated time [s], default the end; returns what the views complain about.
 
     ``settle`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
@@ -95,18 +98,30 @@ def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
 def blueprint(run: RunData) -> rrb.Blueprint:
     """Two cameras on the left, of the sheet and of the rubble; loads and events on the right."""
     reach = 0.5 * float(run.metadata["spacing_m"]) * max(_nodes(run))
-    above = _view("Sheet: blue to red = utilisation, dark = cracked",
-                  (-0.5 * reach - 44, -0.6 * reach - 46, 0.4 * reach + 36), (-0.3 * reach - 8, -4, -4), (24, 34, 52))
+    above = _view(
+        "Sheet: blue to red = utilisation, dark = cracked",
+        (-0.5 * reach - 44, -0.6 * reach - 46, 0.4 * reach + 36),
+        (-0.3 * reach - 8, -4, -4),
+        (24, 34, 52),
+    )
     below = _rubble_view(run)
-    curves = [rrb.TimeSeriesView(origin=f"/load/{axis}", name=f"{label} on the structure [MN]",
-                                 plot_legend=rrb.PlotLegend(corner="LeftTop", visible=True))
-              for axis, label in (("fx", "Fx"), ("fz", "Fz"))]
+    curves = [
+        rrb.TimeSeriesView(
+            origin=f"/load/{axis}",
+            name=f"{label} on the structure [MN]",
+            plot_legend=rrb.PlotLegend(corner="LeftTop", visible=True),
+        )
+        for axis, label in (("fx", "Fx"), ("fz", "Fz"))
+    ]
     log = rrb.TextLogView(origin="/events", name="Events")
     return rrb.Blueprint(
-        rrb.Horizontal(rrb.Vertical(above, below), rrb.Vertical(*curves, log, row_shares=[3, 3, 2]),
-                       column_shares=[3, 2]),
-        rrb.TimePanel(timeline=TIMELINE, state="collapsed"), rrb.BlueprintPanel(state="collapsed"),
-        rrb.SelectionPanel(state="collapsed"))
+        rrb.Horizontal(
+            rrb.Vertical(above, below), rrb.Vertical(*curves, log, row_shares=[3, 3, 2]), column_shares=[3, 2]
+        ),
+        rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+    )
 
 
 def _rubble_view(run: RunData) -> Any:
@@ -116,8 +131,9 @@ def _rubble_view(run: RunData) -> Any:
     if scenario.get("structure", {}).get("breaking") != "upward":
         return _view(f"Rubble from under water: {colours}", (-58, -52, -24), (-12, 0, -7), (14, 52, 70))
     h = float(run.metadata["thickness_m"])
-    return _view(f"Rubble from above: {colours}", (-14.0 * h - 4, -16.0 * h - 8, 7.0 * h + 4), (-2.0 * h, 0, 0),
-                 (14, 52, 70))
+    return _view(
+        f"Rubble from above: {colours}", (-14.0 * h - 4, -16.0 * h - 8, 7.0 * h + 4), (-2.0 * h, 0, 0), (14, 52, 70)
+    )
 
 
 def _nodes(run: RunData) -> list[int]:
@@ -127,15 +143,17 @@ def _nodes(run: RunData) -> list[int]:
 
 def _view(name: str, position: tuple[float, ...], target: tuple[float, ...], rgb: tuple[int, int, int]) -> Any:
     return rrb.Spatial3DView(
-        name=name, origin="/world", background=rrb.Background(color=(*rgb, 255), kind="SolidColor"),
+        name=name,
+        origin="/world",
+        background=rrb.Background(color=(*rgb, 255), kind="SolidColor"),
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=position, look_target=target, eye_up=(0, 0, 1)))
+        eye_controls=rrb.EyeControls3D(position=position, look_target=target, eye_up=(0, 0, 1)),
+    )
 
 
 def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
     # curves are drawn in the order of their paths: the total first, so that it hides no phase
-    series = [("all", "total", None, TOTAL_RGB),
-              *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
+    series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
     index = rr.TimeColumn(TIMELINE, duration=run.t)
     for axis in ("fx", "fz"):
         for key, name, phase, rgb in series:
@@ -150,8 +168,12 @@ def _mesh(mesh: pictures.Mesh) -> Any:
     if not len(mesh.faces):
         return rr.Clear(recursive=False)
     rgb = np.broadcast_to(mesh.rgb, mesh.vertices.shape).astype(np.uint8)
-    return rr.Mesh3D(vertex_positions=mesh.vertices.astype(np.float32), triangle_indices=mesh.faces,
-                     vertex_normals=mesh.normals.astype(np.float32), vertex_colors=rgb)
+    return rr.Mesh3D(
+        vertex_positions=mesh.vertices.astype(np.float32),
+        triangle_indices=mesh.faces,
+        vertex_normals=mesh.normals.astype(np.float32),
+        vertex_colors=rgb,
+    )
 
 
 def _level(kind: str) -> str:
@@ -178,8 +200,20 @@ def _headless_viewer(size: tuple[int, int]) -> Iterator[tuple[str, Any]]:
         port = free.getsockname()[1]
     binary = Path(rerun_cli.__file__).with_name("rerun")
     process = subprocess.Popen(
-        [binary, "--headless", "--bind", "127.0.0.1", "--port", str(port), "--window-size", f"{size[0]}x{size[1]}",
-         "--hide-welcome-screen"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        [
+            binary,
+            "--headless",
+            "--bind",
+            "127.0.0.1",
+            "--port",
+            str(port),
+            "--window-size",
+            f"{size[0]}x{size[1]}",
+            "--hide-welcome-screen",
+        ],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
     url = f"rerun+http://127.0.0.1:{port}/proxy"
     try:
         yield url, _connect(ViewerClient, url, process)

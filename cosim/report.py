@@ -32,16 +32,29 @@ COLOURS = {"breaking": "#2f7ebc", "rotating": "#e6812b", "sliding": "#3a9b5c"}
 #: where energy is or went: terms of `coupling.energy` that belong together, and their colour
 ENERGY = {
     "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),
-    "friction on structure": ("#7fb3dc", ("contact_friction_loss", "friction_structure_loss",
-                                          "side_friction_structure_loss")),
+    "friction on structure": (
+        "#7fb3dc",
+        ("contact_friction_loss", "friction_structure_loss", "side_friction_structure_loss"),
+    ),
     "sheet: damping, scheme": ("#9a9fa6", ("damping_loss", "scheme_loss")),
-    "fracture, hand-over": ("#1d2733", ("fracture_loss", "handover_elastic_loss", "handover_potential_loss",
-                                        "handover_kinetic_loss")),
+    "fracture, hand-over": (
+        "#1d2733",
+        ("fracture_loss", "handover_elastic_loss", "handover_potential_loss", "handover_kinetic_loss"),
+    ),
     "stored in the sheet": ("#8d6cab", ("sheet_elastic", "sheet_foundation", "sheet_kinetic")),
     "stored in the rubble": ("#e6812b", ("rubble_potential", "rubble_kinetic")),
-    "rubble: friction, impact": ("#f2b880", ("impact_ice_loss", "impact_structure_loss", "impact_sheet_loss",
-                                             "friction_ice_loss", "friction_sheet_loss", "side_friction_ice_loss",
-                                             "side_impact_loss")),
+    "rubble: friction, impact": (
+        "#f2b880",
+        (
+            "impact_ice_loss",
+            "impact_structure_loss",
+            "impact_sheet_loss",
+            "friction_ice_loss",
+            "friction_sheet_loss",
+            "side_friction_ice_loss",
+            "side_impact_loss",
+        ),
+    ),
     "water": ("#3a9b5c", ("drag_loss", "side_drag_loss", "dry_top_loss")),
     "ice that left": ("#c9c24f", ("crushed_energy_loss", "cleared_energy_loss")),
     "interface, step, overlap": ("#d45087", ("interface_loss", "stepping_loss", "correction_loss")),
@@ -68,12 +81,28 @@ def content(run: RunData) -> dict[str, Any]:
     """What the page shows, ready for its template."""
     design = beside(run)
     figures = [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)]
-    return {"summary": summary(run), "rows": _rows(run), "figures": figures, "shares": shares_at_peak(run),
-            "budget": budget_report.rows(run), "bound": budget_report.largest_residual(run),
-            "design": {"head": BESIDE, "rows": beside_rows(design), "remarks": remarks(design)},
-            "events": [{"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0] / 1e6, "fz": e.force[2] / 1e6,
-                        "cells": e.cells, "text": e.text} for e in run.events],
-            "metadata": dict(run.metadata), "scenario": run.texts.get("scenario.toml", "")}
+    return {
+        "summary": summary(run),
+        "rows": _rows(run),
+        "figures": figures,
+        "shares": shares_at_peak(run),
+        "budget": budget_report.rows(run),
+        "bound": budget_report.largest_residual(run),
+        "design": {"head": BESIDE, "rows": beside_rows(design), "remarks": remarks(design)},
+        "events": [
+            {
+                "time": e.t_ns / NS,
+                "kind": e.kind,
+                "fx": e.force[0] / 1e6,
+                "fz": e.force[2] / 1e6,
+                "cells": e.cells,
+                "text": e.text,
+            }
+            for e in run.events
+        ],
+        "metadata": dict(run.metadata),
+        "scenario": run.texts.get("scenario.toml", ""),
+    }
 
 
 def _rows(run: RunData) -> list[tuple[str, ...]]:

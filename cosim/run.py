@@ -33,8 +33,10 @@ class Peaks:
         self.value[higher], self.t_ns[higher] = now[higher], t_ns
 
     def to_json(self) -> dict[str, dict[str, float]]:
-        return {name: {"value": float(v), "time": t / NS}
-                for name, v, t in zip(COMPONENTS, self.value, self.t_ns.tolist(), strict=True)}
+        return {
+            name: {"value": float(v), "time": t / NS}
+            for name, v, t in zip(COMPONENTS, self.value, self.t_ns.tolist(), strict=True)
+        }
 
 
 class PeaksByPhase:
@@ -103,16 +105,32 @@ class RunResult:
     def to_json(self) -> dict[str, Any]:
         simulated = self.t_ns / NS
         return {
-            "scenario": self.scenario.title, "simulated_s": simulated, "wall_s": self.wall_s,
-            "real_time_factor": simulated / self.wall_s, **self.windows.to_json(), "sustained": self.sustained(),
-            "events": [event_json(e) for e in self.events], "fragments": self.fragments, "blocks": self.blocks,
+            "scenario": self.scenario.title,
+            "simulated_s": simulated,
+            "wall_s": self.wall_s,
+            "real_time_factor": simulated / self.wall_s,
+            **self.windows.to_json(),
+            "sustained": self.sustained(),
+            "events": [event_json(e) for e in self.events],
+            "fragments": self.fragments,
+            "blocks": self.blocks,
             "ledger": self.ledger,
         }
 
 
 def event_json(e: Event) -> dict[str, Any]:
-    return {"time": e.t_ns / NS, "kind": e.kind, "fx": e.force[0], "fy": e.force[1], "fz": e.force[2],
-            "cells": e.cells, "position": list(e.position), "text": e.text, "length": e.length, "area": e.area}
+    return {
+        "time": e.t_ns / NS,
+        "kind": e.kind,
+        "fx": e.force[0],
+        "fy": e.force[1],
+        "fz": e.force[2],
+        "cells": e.cells,
+        "position": list(e.position),
+        "text": e.text,
+        "length": e.length,
+        "area": e.area,
+    }
 
 
 def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunResult:
@@ -137,13 +155,20 @@ def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunR
 def _finish(result: RunResult, scheduler: Scheduler) -> None:
     books = scheduler.ledger
     result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
-    result.ledger = {"mass_error": books.mass_error, "momentum_error": books.momentum_error,
-                     "angular_momentum_error": books.angular_momentum_error,
-                     "angular_momentum_change": books.angular_momentum_change,
-                     "energy_residual": books.energy.relative, "sheet_energy_residual": books.sheet_energy_residual,
-                     **books.energy.terms, **scheduler.rubble.momenta,
-                     "initial_mass": books.initial_mass, "handed_over_mass": books.handed_over_mass,
-                     "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
-                     "cleared_mass": scheduler.rubble.cleared_mass,
-                     "interface_lost": scheduler.power.loss, "interface_exchanged": scheduler.power.exchanged,
-                     **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")}}
+    result.ledger = {
+        "mass_error": books.mass_error,
+        "momentum_error": books.momentum_error,
+        "angular_momentum_error": books.angular_momentum_error,
+        "angular_momentum_change": books.angular_momentum_change,
+        "energy_residual": books.energy.relative,
+        "sheet_energy_residual": books.sheet_energy_residual,
+        **books.energy.terms,
+        **scheduler.rubble.momenta,
+        "initial_mass": books.initial_mass,
+        "handed_over_mass": books.handed_over_mass,
+        "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
+        "cleared_mass": scheduler.rubble.cleared_mass,
+        "interface_lost": scheduler.power.loss,
+        "interface_exchanged": scheduler.power.exchanged,
+        **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")},
+    }

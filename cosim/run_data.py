@@ -65,8 +65,9 @@ class RunData:
         return values
 
     @classmethod
-    def decode(cls, name: str, metadata: Mapping[str, str], texts: Mapping[str, str],
-               stored: Iterable[Stored]) -> RunData:
+    def decode(
+        cls, name: str, metadata: Mapping[str, str], texts: Mapping[str, str], stored: Iterable[Stored]
+    ) -> RunData:
         """From serialised messages; other topics are passed over."""
         t_ns: list[int] = []
         loads: list[list[float]] = []
@@ -83,8 +84,16 @@ class RunData:
                 message = messages.Ledger.FromString(data)
                 books[topic].append((time, dict(zip(message.name, message.value, strict=True))))
         times = np.array(t_ns, np.int64)
-        return cls(name, metadata, times, np.array(loads, float).reshape(-1, 3, 3), tuple(events),
-                   _columns(times, books["/ledger"]), texts, _columns(times, books["/load/budget"]))
+        return cls(
+            name,
+            metadata,
+            times,
+            np.array(loads, float).reshape(-1, 3, 3),
+            tuple(events),
+            _columns(times, books["/ledger"]),
+            texts,
+            _columns(times, books["/load/budget"]),
+        )
 
 
 def _event(t_ns: int, m: Any) -> Event:

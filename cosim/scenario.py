@@ -75,8 +75,11 @@ class ScenarioModel(Section):
         if toe is not None and toe <= draft:
             raise fault("structure.toe_depth", f"the ice passes under the slope; use more than its draft {draft:g} m")
         if self.rubble.initial_volume > 0.0:
-            raise fault("rubble.initial_volume", "initial rubble settles under the sheet, before a downward-breaking "
-                                                 'structure; start an upward-breaking one without: "0 m^3"')
+            raise fault(
+                "rubble.initial_volume",
+                "initial rubble settles under the sheet, before a downward-breaking "
+                'structure; start an upward-breaking one without: "0 m^3"',
+            )
         return self
 
     @model_validator(mode="after")
@@ -192,8 +195,10 @@ def _locate(path: str | Path) -> Path:
     if file.is_dir():
         file = file / "scenario.toml"
     if not file.is_file():
-        raise ScenarioError(f"{file}: no such scenario; give a folder with scenario.toml or a TOML file "
-                            "(`cosim list` shows what is here)")
+        raise ScenarioError(
+            f"{file}: no such scenario; give a folder with scenario.toml or a TOML file "
+            "(`cosim list` shows what is here)"
+        )
     return file
 
 
@@ -219,6 +224,8 @@ def _apply(raw: dict[str, Any], item: str) -> str:
 def _warnings(model: ScenarioModel) -> tuple[str, ...]:
     nu = model.ice.poisson_ratio
     if nu < 1 / 3 - 1e-9:
-        return (f"ice.poisson_ratio = {nu:g} is below 1/3: in-plane shear springs resist rigid rotation, "
-                "so that a turning floe is strained; use 1/3 unless this is what you study",)
+        return (
+            f"ice.poisson_ratio = {nu:g} is below 1/3: in-plane shear springs resist rigid rotation, "
+            "so that a turning floe is strained; use 1/3 unless this is what you study",
+        )
     return ()

@@ -10,8 +10,14 @@ from pydantic import BaseModel, ValidationError
 from cosim.errors import InputError
 from cosim.units import Unit
 
-EXAMPLES = {"nodes": "[60, 60]", "back": '"held"', "kind": '"cone"', "title": '"..."', "friction": "0.1",
-            "poisson_ratio": "0.3333333333333333"}
+EXAMPLES = {
+    "nodes": "[60, 60]",
+    "back": '"held"',
+    "kind": '"cone"',
+    "title": '"..."',
+    "friction": "0.1",
+    "poisson_ratio": "0.3333333333333333",
+}
 
 
 class ScenarioError(InputError):

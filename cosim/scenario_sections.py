@@ -125,8 +125,11 @@ class Sheet(Section):
         d, e = self.spacing, self.width / (self.nodes[1] - 1)
         if not math.isclose(d, e, rel_tol=1e-6):
             nearest = round(self.width / d) + 1
-            raise fault("nodes", f"cells must be square, these are {d:.4g} m x {e:.4g} m; "
-                                 f"use [{self.nodes[0]}, {nearest}] or set width = \"{d * (nearest - 1):.6g} m\"")
+            raise fault(
+                "nodes",
+                f"cells must be square, these are {d:.4g} m x {e:.4g} m; "
+                f'use [{self.nodes[0]}, {nearest}] or set width = "{d * (nearest - 1):.6g} m"',
+            )
         if self.axis > self.width:
             raise fault("axis_from_side", f"the structure's axis misses the sheet; use 0 to {self.width:g} m")
         return self
@@ -156,8 +159,11 @@ class Structure(Section):
         elif self.neck_radius is not None and self.neck_radius >= self.waterline_radius:
             raise fault("neck_radius", f"must be below the waterline radius of {self.waterline_radius:g} m")
         elif self.breaking == "upward" and self.toe_depth is None:
-            raise fault("toe_depth", 'missing; an upward-breaking cone widens downwards to its rim: add its depth, '
-                                     'for example toe_depth = "4 m"')
+            raise fault(
+                "toe_depth",
+                "missing; an upward-breaking cone widens downwards to its rim: add its depth, "
+                'for example toe_depth = "4 m"',
+            )
         return self
 
 

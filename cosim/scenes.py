@@ -19,8 +19,9 @@ from cosim.messages import stamp
 from coupling.interface import Array, IntArray
 
 WORLD = "world"
-POINT = np.dtype([("x", "<f4"), ("y", "<f4"), ("z", "<f4"),
-                  ("red", "u1"), ("green", "u1"), ("blue", "u1"), ("alpha", "u1")])
+POINT = np.dtype(
+    [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("red", "u1"), ("green", "u1"), ("blue", "u1"), ("alpha", "u1")]
+)
 NODE = np.dtype([*POINT.descr, ("damage", "<f4"), ("utilisation", "<f4"), ("present", "u1"), ("node", "<u4")])
 _KINDS = {"f4": PackedElementField.FLOAT32, "u1": PackedElementField.UINT8, "u4": PackedElementField.UINT32}
 
@@ -79,7 +80,7 @@ def scene(t_ns: int, name: str, triangle_lists: list[bytes]) -> bytes:
 
 
 def transform(t_ns: int, child: str) -> bytes:
-    """world -> child, at rest at the origin. Foxglove shows nothing without a transform that names ``world``."""
+    """World -> child, at rest at the origin. Foxglove shows nothing without a transform that names ``world``."""
     message = FrameTransforms()
     item = message.transforms.add(parent_frame_id=WORLD, child_frame_id=child)
     stamp(item.timestamp, t_ns)

@@ -70,7 +70,7 @@ def prisms(blocks: BlockTable) -> tuple[Array, IntArray, IntArray]:
     """Points, triangles and the block of every triangle: convex outlines in x-z, extruded by the block's width."""
     points, faces, owner, base = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)], 0
     for i in range(blocks.count):
-        outline = blocks.outline[blocks.offset[i]:blocks.offset[i + 1]]
+        outline = blocks.outline[blocks.offset[i] : blocks.offset[i + 1]]
         k, y, half = len(outline), blocks.position[i, 1], blocks.width[i] / 2
         for side in (y - half, y + half):
             points.append(np.column_stack([outline[:, 0], np.full(k, side), outline[:, 1]]))

@@ -22,9 +22,17 @@ from coupling.interface import PHASES
 Row = dict[str, Any]
 COMPONENTS = ("fx", "fz", "f")
 #: columns of a row that do not depend on what is varied, [N], [s]
-RESULTS = (*(f"{c}_peak" for c in COMPONENTS), *(f"{c}_time" for c in COMPONENTS),
-           *(f"{p}_{c}_peak" for p in PHASES for c in COMPONENTS), "fx_mean", "fz_mean", "simulated_s", "wall_s",
-           "fragments", "blocks")
+RESULTS = (
+    *(f"{c}_peak" for c in COMPONENTS),
+    *(f"{c}_time" for c in COMPONENTS),
+    *(f"{p}_{c}_peak" for p in PHASES for c in COMPONENTS),
+    "fx_mean",
+    "fz_mean",
+    "simulated_s",
+    "wall_s",
+    "fragments",
+    "blocks",
+)
 
 
 def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Row:
@@ -46,8 +54,14 @@ def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Ro
     return row | {name: result[name] for name in ("simulated_s", "wall_s", "fragments", "blocks")}
 
 
-def sweep(scenario: str, overrides: Sequence[str], variants: Sequence[Variant], workers: int,
-          done: Callable[[Variant, Row], None], task: Callable[..., Row] = run_variant) -> list[Row]:
+def sweep(
+    scenario: str,
+    overrides: Sequence[str],
+    variants: Sequence[Variant],
+    workers: int,
+    done: Callable[[Variant, Row], None],
+    task: Callable[..., Row] = run_variant,
+) -> list[Row]:
     """A row for each variant, in their order, whatever order they end in; ``done`` is called as each ends."""
     rows: dict[int, Row] = {}
     for k, row in _all(scenario, overrides, variants, workers, task):
@@ -56,8 +70,9 @@ def sweep(scenario: str, overrides: Sequence[str], variants: Sequence[Variant], 
     return with_ratios([rows[k] for k in range(len(variants))])
 
 
-def _all(scenario: str, overrides: Sequence[str], variants: Sequence[Variant], workers: int,
-         task: Callable[..., Row]) -> Iterator[tuple[int, Row]]:
+def _all(
+    scenario: str, overrides: Sequence[str], variants: Sequence[Variant], workers: int, task: Callable[..., Row]
+) -> Iterator[tuple[int, Row]]:
     """Number and row of each variant as it ends."""
     waiting = deque(enumerate(variants))
     while waiting:

@@ -17,8 +17,20 @@ from cosim.scenario import load_scenario
 from cosim.sweep import COMPONENTS, RESULTS, Row, sweep
 from cosim.variants import Variant, parse_axis, variants
 
-COLUMNS = ("variant", "Fx", "at [s]", "ratio", "Fz", "at [s]", "ratio", "breaking", "rotating", "sliding", "mean Fx",
-           "wall [s]")
+COLUMNS = (
+    "variant",
+    "Fx",
+    "at [s]",
+    "ratio",
+    "Fz",
+    "at [s]",
+    "ratio",
+    "breaking",
+    "rotating",
+    "sliding",
+    "mean Fx",
+    "wall [s]",
+)
 
 
 def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int) -> dict[str, Any]:
@@ -28,8 +40,13 @@ def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid
     for text in base.warnings:
         warn(text)
     chosen = variants(axes, grid)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("variants, remaining"),
-               TimeRemainingColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("variants, remaining"),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=stderr, transient=True) as progress:
         task = progress.add_task(base.title, total=len(chosen))
 
@@ -39,8 +56,14 @@ def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid
             progress.console.print(f"{variant.name}: {what}", highlight=False, markup=False, soft_wrap=True)
 
         rows = sweep(scenario, overrides, chosen, workers, done)
-    return {"scenario": base.title, "overrides": list(overrides), "keys": [axis.key for axis in axes], "grid": grid,
-            "failed": sum(row["error"] is not None for row in rows), "variants": rows}
+    return {
+        "scenario": base.title,
+        "overrides": list(overrides),
+        "keys": [axis.key for axis in axes],
+        "grid": grid,
+        "failed": sum(row["error"] is not None for row in rows),
+        "variants": rows,
+    }
 
 
 def write_csv(content: dict[str, Any], out: Path) -> None:

@@ -50,8 +50,15 @@ def _bars(ax: Axes, groups: list[list[Row]], base: float, component: str) -> Non
         for row in group:
             peak = row[f"{component}_peak"] / 1e6
             ax.barh(-place, peak - base, left=base, height=0.8, color="#e6812b" if peak > base else "#2f7ebc")
-            ax.annotate(f"{peak:.2f}", (peak, -place), xytext=(3 if peak >= base else -3, 0), fontsize=7, va="center",
-                        textcoords="offset points", ha="left" if peak >= base else "right")
+            ax.annotate(
+                f"{peak:.2f}",
+                (peak, -place),
+                xytext=(3 if peak >= base else -3, 0),
+                fontsize=7,
+                va="center",
+                textcoords="offset points",
+                ha="left" if peak >= base else "right",
+            )
             labels.append((-place, row["variant"]))
             place += 1.0
         place += 0.5

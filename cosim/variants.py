@@ -43,8 +43,9 @@ def parse_axis(text: str) -> Axis:
     key, equals, values = text.partition("=")
     key = key.strip()
     if not equals or "." not in key or not all(key.split(".")):
-        raise InputError(f"--vary {text}: not of the form section.key=value,value; "
-                         "for example --vary 'ice.thickness=2 m,3 m'")
+        raise InputError(
+            f"--vary {text}: not of the form section.key=value,value; for example --vary 'ice.thickness=2 m,3 m'"
+        )
     found = split_values(values)
     if not all(found):
         raise InputError(f"--vary {text}: an empty value; separate values by one comma each")

@@ -88,10 +88,10 @@ class OverlapContact:
         return force, tangent
 
     def _length(self, L: Array, normal: Array) -> tuple[Array, Array, np.ndarray, Array]:
-        """sin a, cos a, where the contact is shorter than the face of the ice, and its length [m]; all as L."""
+        """Sin a, cos a, where the contact is shorter than the face of the ice, and its length [m]; all as L."""
         sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
         whole = self._h / sin
-        growing = (L > 0.0) & (L < whole * cos)
+        growing = (L > 0.0) & (whole * cos > L)
         return sin, cos, growing, np.where(growing, L / np.maximum(cos, 1e-12), np.where(L > 0.0, whole, 0.0))
 
     def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
@@ -148,8 +148,9 @@ class CrushingContact(OverlapContact):
         """Height of the middle of the face of contact, (m,) [m]; an edge that has let go keeps its last one."""
         sin, _, _, length = self._length(L, normal)
         total = length.sum(axis=1)
-        depth = np.divide((length**2 * sin).sum(axis=1), total, out=self._h - 2.0 * self.face * self.height,
-                          where=total > 0.0)
+        depth = np.divide(
+            (length**2 * sin).sum(axis=1), total, out=self._h - 2.0 * self.face * self.height, where=total > 0.0
+        )
         return np.asarray(self.face * 0.5 * (self._h - depth))
 
 

@@ -43,8 +43,9 @@ class CrushedEdge:
 
     def cut(self, row: IntArray, column: IntArray) -> Array:
         """Depth of the cut measured from the front of the node's own ice [m]."""
-        first = np.where(self.front[column] == self.nx - 1, (self.nx - 1) * self.d,
-                         self.front[column] * self.d + 0.5 * self.d)
+        first = np.where(
+            self.front[column] == self.nx - 1, (self.nx - 1) * self.d, self.front[column] * self.d + 0.5 * self.d
+        )
         ahead = first - (row * self.d + self.lead(row))
         return np.maximum(self.depth[column] - ahead, 0.0)
 

@@ -87,5 +87,6 @@ class EnergyBalance:
                 f"t = {t_ns / NS:.3f} s: the energy balance is off by {self.residual:.4g} J, {self.relative:.2%} of the"
                 f" drift's work (allowed {LIMIT:.0%}), {self.residual - residual_of(before):.4g} J of it in this "
                 f"window; largest change in it: {worst} {change[worst]:+.4g} J. Shorten coupling.window and "
-                "rubble.substep; if that does not help, please report the scenario")
+                "rubble.substep; if that does not help, please report the scenario"
+            )
         return {**self.terms, "energy_residual": self.residual}

@@ -44,11 +44,13 @@ def centre_of(fragment: Fragment) -> Array:
 
 def momenta_of(fragment: Fragment, about: Array) -> tuple[Array, Array]:
     """Momentum of a fragment's nodes x, y, z and angular momentum about a point in the x-z plane (4,), and what they
-    would be if no parts cancelled (4,): their scale."""
+    would be if no parts cancelled (4,): their scale.
+    """
     mass, v = np.maximum(fragment.mass, 0.0)[:, None], fragment.velocity
     arm, own = fragment.position[:, [0, 2]] - about, mass[:, 0] * fragment.thickness**2 / 12.0
-    parts = np.column_stack((mass * v, mass[:, 0] * arm[:, 0] * v[:, 2], -mass[:, 0] * arm[:, 1] * v[:, 0],
-                             -own * fragment.tilt_rate))
+    parts = np.column_stack(
+        (mass * v, mass[:, 0] * arm[:, 0] * v[:, 2], -mass[:, 0] * arm[:, 1] * v[:, 0], -own * fragment.tilt_rate)
+    )
     total, scale = parts.sum(axis=0), np.abs(parts).sum(axis=0)
     return np.append(total[:3], total[3:].sum()), np.append(np.full(3, scale[:3].max()), scale[3:].sum())
 

@@ -150,8 +150,20 @@ class BlockTable:
     @classmethod
     def empty(cls) -> BlockTable:
         i, f = np.empty(0, np.int64), np.empty(0)
-        return cls(i, i, i, f, f, np.empty((0, 3)), f, np.empty((0, 3)), f, np.empty((0, 3)), np.empty((0, 2)),
-                   np.zeros(1, np.int64))
+        return cls(
+            i,
+            i,
+            i,
+            f,
+            f,
+            np.empty((0, 3)),
+            f,
+            np.empty((0, 3)),
+            f,
+            np.empty((0, 3)),
+            np.empty((0, 2)),
+            np.zeros(1, np.int64),
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,8 +33,15 @@ class Ledger:
     energy: EnergyBalance = field(default_factory=EnergyBalance)  #: of the whole system
     _work: float = 0.0
 
-    def hand_over(self, t_ns: int, mass: float, trimmed: float, momentum_error: float,
-                  angular_momentum_error: float, angular_momentum_change: float) -> None:
+    def hand_over(
+        self,
+        t_ns: int,
+        mass: float,
+        trimmed: float,
+        momentum_error: float,
+        angular_momentum_error: float,
+        angular_momentum_change: float,
+    ) -> None:
         """Books one fragment."""
         self.trimmed_mass += trimmed
         self.handed_over_mass += mass - trimmed
@@ -48,15 +55,28 @@ class Ledger:
         """Books ice that blocks have lost at overloaded contacts."""
         self.trimmed_mass += mass
 
-    def close_window(self, t_ns: int, sheet: float, crushed: float, rubble: float, cleared: float,
-                     sheet_energy: Mapping[str, float], rubble_energy: Mapping[str, float]) -> dict[str, float]:
+    def close_window(
+        self,
+        t_ns: int,
+        sheet: float,
+        crushed: float,
+        rubble: float,
+        cleared: float,
+        sheet_energy: Mapping[str, float],
+        rubble_energy: Mapping[str, float],
+    ) -> dict[str, float]:
         """Closes the books of a window; returns them by name [kg], [J]."""
         crushed += self.trimmed_mass
         error = abs(sheet + rubble + crushed + cleared - self.initial_mass) / self.initial_mass
         self.mass_error = max(self.mass_error, error)
         self._check("mass", error, t_ns, MASS_TOLERANCE)
-        books = {"sheet_mass": sheet, "rubble_mass": rubble, "crushed_mass": crushed, "cleared_mass": cleared,
-                 "mass_error": error}
+        books = {
+            "sheet_mass": sheet,
+            "rubble_mass": rubble,
+            "crushed_mass": crushed,
+            "cleared_mass": cleared,
+            "mass_error": error,
+        }
         if sheet_energy:
             self._check("energy of the sheet", self._sheet(sheet_energy), t_ns, ENERGY_TOLERANCE)
             books["sheet_energy_residual"] = sheet_energy["sheet_energy_residual"]
@@ -71,5 +91,7 @@ class Ledger:
     def _check(self, term: str, error: float, t_ns: int, tolerance: float | None = None) -> None:
         allowed = self.tolerance if tolerance is None else tolerance
         if not error <= allowed:
-            raise SimulationError(f"t = {t_ns / NS:.3f} s: the balance of {term} is off by {error:.3g} (allowed "
-                                  f"{allowed:g}); please report the scenario")
+            raise SimulationError(
+                f"t = {t_ns / NS:.3f} s: the balance of {term} is off by {error:.3g} (allowed "
+                f"{allowed:g}); please report the scenario"
+            )

@@ -33,5 +33,10 @@ class PowerBooks:
         self.exchanged += power * window
         self.time += window if power > 0.0 else 0.0
         self.error = abs(self.residual) / max(power, self.exchanged / self.time) if power > 0.0 else 0.0
-        return {"power_from_rubble": given, "power_to_sheet": taken, "power_residual": self.residual,
-                "power_error": self.error, "interface_lost": self.loss}
+        return {
+            "power_from_rubble": given,
+            "power_to_sheet": taken,
+            "power_residual": self.residual,
+            "power_error": self.error,
+            "interface_lost": self.loss,
+        }

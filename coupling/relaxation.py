@@ -25,7 +25,7 @@ def on_common_nodes(*forces: SheetForces) -> tuple[IntArray, list[Array]]:
 
 
 def combined(a: float, f: SheetForces, b: float, g: SheetForces) -> SheetForces:
-    """a f + b g, on the nodes of both."""
+    """A f + b g, on the nodes of both."""
     nodes, (x, y) = on_common_nodes(f, g)
     return SheetForces(nodes, a * x + b * y)
 

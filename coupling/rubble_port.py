@@ -51,8 +51,17 @@ class Saved:
 class RubblePort:
     """Sections of `rubble.layer`, fed with fragments and with the sheet's edge."""
 
-    def __init__(self, structure: Structure, physics: RubblePhysics, *, pitch: float, origin: float,
-                 columns_per_section: int, domain: Domain, threads: int = 1):
+    def __init__(
+        self,
+        structure: Structure,
+        physics: RubblePhysics,
+        *,
+        pitch: float,
+        origin: float,
+        columns_per_section: int,
+        domain: Domain,
+        threads: int = 1,
+    ):
         """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
         bottom, top = max(structure.bottom, -domain.depth), structure.top
 
@@ -60,8 +69,9 @@ class RubblePort:
             outline = structure.section_outline(y, bottom, top, OUTLINE_TOLERANCE)
             return convex_parts(outline, back=None if structure.revolved else float(outline[:, 0].max()) + 100.0)
 
-        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, revolved=structure.revolved,
-                                 domain=domain, threads=threads)
+        self.layer = RubbleLayer(
+            physics, pitch, origin=origin, solids=solids, revolved=structure.revolved, domain=domain, threads=threads
+        )
         self.physics, self.columns_per_section = physics, columns_per_section
         self.structure = structure
         self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
@@ -83,8 +93,9 @@ class RubblePort:
                 trimmed, count = trimmed - block.mass, count + 1
         self._fragments += 1
         error = np.abs(arrived + changed - left) / np.maximum(scale, 1e-9)
-        return HandOver(count, mass, trimmed, float(error[:3].max()), float(error[3]),
-                        float(abs(changed[3]) / max(scale[3], 1e-9)))
+        return HandOver(
+            count, mass, trimmed, float(error[:3].max()), float(error[3]), float(abs(changed[3]) / max(scale[3], 1e-9))
+        )
 
     def _place(self, b: BlockBirth) -> Block | None:
         """Puts one block into its section, outside the structure; None if nothing is left of it."""
@@ -92,8 +103,19 @@ class RubblePort:
         polygon = self.layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
         if len(polygon) < 3 or moments(contiguous(polygon))[0] < SMALLEST * self.physics.thickness**2:
             return None
-        number = self.layer.add_block(key, polygon, b.cuts, b.widths, self.physics.rho_i,
-                                      b.velocity.tolist(), b.omega, b.y, self._fragments, b.angle, alone=False)
+        number = self.layer.add_block(
+            key,
+            polygon,
+            b.cuts,
+            b.widths,
+            self.physics.rho_i,
+            b.velocity.tolist(),
+            b.omega,
+            b.y,
+            self._fragments,
+            b.angle,
+            alone=False,
+        )
         block = self.layer.block(number)
         self._born += energy_of(block, self.physics)
         return block
@@ -115,9 +137,18 @@ class RubblePort:
         return self._settled(lambda: rest(self.layer, self._fronts(edges)))
 
     def _hold(self, edges: dict[int, SheetEdge]) -> None:
-        self.set_sheet({k: replace(e, velocity=np.zeros_like(e.velocity), stiffness=(LID, LID),
-                                inertia=(self.physics.sheet_mass, self.physics.sheet_mass))
-                        for k, e in edges.items()}, self._forces)
+        self.set_sheet(
+            {
+                k: replace(
+                    e,
+                    velocity=np.zeros_like(e.velocity),
+                    stiffness=(LID, LID),
+                    inertia=(self.physics.sheet_mass, self.physics.sheet_mass),
+                )
+                for k, e in edges.items()
+            },
+            self._forces,
+        )
 
     def _settled(self, pile: Callable[[], Pile]) -> Pile:
         try:
@@ -128,7 +159,7 @@ class RubblePort:
         return settled
 
     def _fronts(self, edges: dict[int, SheetEdge]) -> dict[int, tuple[float, float]]:
-        """x of the structure's face at the sheet's underside, or of the sheet's front, and z of the underside [m]."""
+        """X of the structure's face at the sheet's underside, or of the sheet's front, and z of the underside [m]."""
         under = {k: float(e.z[0]) - 0.5 * e.thickness for k, e in edges.items()}
         face = {k: float(self.structure.face_x(self.layer.centre(k), under[k])) for k in edges}
         return {k: (min(face[k], e.front), under[k]) for k, e in edges.items() if np.isfinite(face[k])}
@@ -143,8 +174,9 @@ class RubblePort:
             self.layer.remove_sheet(key)
         self._edges = edges
         for key, e in edges.items():
-            self.layer.set_sheet(key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, e.inertia,
-                                 _on_edge(carried, e))
+            self.layer.set_sheet(
+                key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, e.inertia, _on_edge(carried, e)
+            )
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
@@ -190,8 +222,20 @@ class RubblePort:
 
     def blocks(self) -> BlockTable:
         t = self.layer.table()
-        return BlockTable(t.id, t.section, t.phase, t.mass, t.width, t.position, t.angle, t.velocity, t.omega, t.load,
-                          t.outline, t.offset)
+        return BlockTable(
+            t.id,
+            t.section,
+            t.phase,
+            t.mass,
+            t.width,
+            t.position,
+            t.angle,
+            t.velocity,
+            t.omega,
+            t.load,
+            t.outline,
+            t.offset,
+        )
 
     def load(self) -> Array:
         """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""

@@ -89,8 +89,16 @@ class RubbleParticipant(Protocol):
 class Scheduler:
     """Runs the participants window by window; time is an integer number of nanoseconds."""
 
-    def __init__(self, sheet: SheetParticipant, rubble: RubbleParticipant, ledger: Ledger, window_ns: int,
-                 scheme: Scheme, steering: Steering = fixed, end_ns: int | None = None):
+    def __init__(
+        self,
+        sheet: SheetParticipant,
+        rubble: RubbleParticipant,
+        ledger: Ledger,
+        window_ns: int,
+        scheme: Scheme,
+        steering: Steering = fixed,
+        end_ns: int | None = None,
+    ):
         """``window_ns`` is the first window; ``end_ns`` the end of the run, at which the last one is cut off."""
         self.sheet, self.rubble, self.ledger, self.window_ns, self._scheme = sheet, rubble, ledger, window_ns, scheme
         self._steering, self._next, self._end = steering, window_ns, end_ns
@@ -106,8 +114,15 @@ class Scheduler:
         self.t_ns += self.window_ns
         load = self.rubble.load()
         load[Phase.BREAKING] += report.load
-        books = self.ledger.close_window(self.t_ns, self.sheet.mass, self.sheet.crushed, self.rubble.mass,
-                                         self.rubble.cleared_mass, self.sheet.energy, self.rubble.energy)
+        books = self.ledger.close_window(
+            self.t_ns,
+            self.sheet.mass,
+            self.sheet.crushed,
+            self.rubble.mass,
+            self.rubble.cleared_mass,
+            self.sheet.energy,
+            self.rubble.energy,
+        )
         books |= self.power.close_window(self.rubble.power, self.sheet.power, self.window_ns / NS) | self.notes
         books |= self.rubble.momenta
         self.jump = bool(report.fragments)
@@ -147,8 +162,14 @@ class Scheduler:
         """A fragment leaves the sheet's books and becomes rubble."""
         moved = self.rubble.add(fragment)
         self.fragments += 1
-        self.ledger.hand_over(self.t_ns, moved.mass, moved.trimmed, moved.momentum_error,
-                              moved.angular_momentum_error, moved.angular_momentum_change)
+        self.ledger.hand_over(
+            self.t_ns,
+            moved.mass,
+            moved.trimmed,
+            moved.momentum_error,
+            moved.angular_momentum_error,
+            moved.angular_momentum_change,
+        )
 
     def rubble_load(self) -> Array:
         """Total of the blocks' load on the structure in the last window, (3,) [N]."""

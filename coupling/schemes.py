@@ -94,8 +94,11 @@ class SerialImplicit:
         else:
             self._give_up(s, residual)
         self._before, self._last = self._last, (s.window_ns, answer)
-        s.notes = {"iterations": float(k), "interface_residual": residual,
-                   "unconverged_windows": float(self._unconverged)}
+        s.notes = {
+            "iterations": float(k),
+            "interface_residual": residual,
+            "unconverged_windows": float(self._unconverged),
+        }
         return report
 
     def _first_guess(self, s: Scheduler) -> SheetForces:
@@ -117,7 +120,8 @@ class SerialImplicit:
                 f"t = {s.t_ns / NS:.3f} s: the forces between sheet and rubble still change by {residual:.2g} of "
                 f"themselves after {self._limits.max_iterations} iterations of the window of {s.window_ns / 1e6:g} ms "
                 f"(tolerance {self._limits.tolerance:g}): shorten coupling.window, raise coupling.max_iterations or "
-                "coupling.tolerance, or let such windows be counted with coupling.unconverged = 'count'")
+                "coupling.tolerance, or let such windows be counted with coupling.unconverged = 'count'"
+            )
 
 
 SCHEMES: dict[str, Callable[[Iteration], Scheme]] = {

@@ -7,8 +7,9 @@ import numpy as np
 from coupling.interface import Array, Event, Fragment
 
 
-def event(t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str, length: float = 0.0,
-          area: float = 0.0) -> Event:
+def event(
+    t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str, length: float = 0.0, area: float = 0.0
+) -> Event:
     """An event at ``where`` (3,) [m] under a load (3,) [N]; see `coupling.interface.Event`."""
     force = (float(load[0]), float(load[1]), float(load[2]))
     place = (float(where[0]), float(where[1]), float(where[2]))
@@ -41,7 +42,10 @@ def departure(t_ns: int, load: Array, cells: int, f: Fragment, at_structure: boo
 
 def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) -> Event:
     """Where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the missing buoyancy. That is right
-    until the underside leaves the water at w = draft; beyond, it pulls too much."""
-    text = (f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "
-            "from here on the linear foundation pulls it down with more than its weight")
+    until the underside leaves the water at w = draft; beyond, it pulls too much.
+    """
+    text = (
+        f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "
+        "from here on the linear foundation pulls it down with more than its weight"
+    )
     return event(t_ns, "out_of_water", load, 0, where, text)

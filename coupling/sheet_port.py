@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numba import njit
 
 from coupling import sheet_events
 from coupling.budget import Pairs
+from coupling.compiled import compiled
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
 from coupling.friction_share import friction_part
@@ -49,8 +49,15 @@ class SheetReport:
 class SheetPort:
     """Lattice, edge contact and crushed edge of one floe that drifts along +x."""
 
-    def __init__(self, sheet: Sheet, structure: Structure, law: ContactLaw, velocity: float,
-                 columns_per_section: int = 1, contact: type[OverlapContact] = OverlapContact):
+    def __init__(
+        self,
+        sheet: Sheet,
+        structure: Structure,
+        law: ContactLaw,
+        velocity: float,
+        columns_per_section: int = 1,
+        contact: type[OverlapContact] = OverlapContact,
+    ):
         g, ice = sheet.grid, sheet.ice
         self.sheet, self.velocity, self.columns_per_section = sheet, velocity, columns_per_section
         self.contact = contact(structure, law, velocity, ice.h, ice.freeboard)
@@ -76,8 +83,9 @@ class SheetPort:
         self._fragments: list[Fragment] = []
         self._at_structure: list[bool] = []
         self._renew_edge()
-        sheet.energy.friction_of = partial(friction_part, structure, law.friction, self.contact.face,
-                                           self.contact.touching_z)
+        sheet.energy.friction_of = partial(
+            friction_part, structure, law.friction, self.contact.face, self.contact.touching_z
+        )
 
     # ---- one window -------------------------------------------------------------------------------------------
 
@@ -100,8 +108,13 @@ class SheetPort:
         events += self._lifted_out(rubble_load + load)
         self._quiet = not out.failed
         r = out.reaction
-        budget = {"pressed_sheet": r.foundation, "drag": r.drag, "inertia": r.inertia, "held": r.held,
-                  "staggering": r.applied}
+        budget = {
+            "pressed_sheet": r.foundation,
+            "drag": r.drag,
+            "inertia": r.inertia,
+            "held": r.held,
+            "staggering": r.applied,
+        }
         return SheetReport(load, self._fragments, events, budget)
 
     def save(self) -> Memory:
@@ -209,10 +222,21 @@ class SheetPort:
         position[:, 1] += self.ice_y[column] - (g.y0 + column * g.d)
         velocity[:, :2], velocity[:, 2] = s.u_dot[nodes] + (self.velocity, 0.0), s.q_dot[nodes, 0]
         return Fragment(
-            row=g.nx - 1 - row, column=column, mass=self._ice_mass(nodes) - crushed, length=self.edge.length(row),
-            width=self.edge.width[column], lead=self.edge.lead(row), position=position, velocity=velocity,
-            tilt=s.q[nodes, 1].copy(), tilt_rate=s.q_dot[nodes, 1].copy(), cut=self.edge.cut(row, column),
-            cut_tan=self.edge.tan[column], cut_face=self.contact.face, thickness=self.sheet.ice.h)
+            row=g.nx - 1 - row,
+            column=column,
+            mass=self._ice_mass(nodes) - crushed,
+            length=self.edge.length(row),
+            width=self.edge.width[column],
+            lead=self.edge.lead(row),
+            position=position,
+            velocity=velocity,
+            tilt=s.q[nodes, 1].copy(),
+            tilt_rate=s.q_dot[nodes, 1].copy(),
+            cut=self.edge.cut(row, column),
+            cut_tan=self.edge.tan[column],
+            cut_face=self.contact.face,
+            thickness=self.sheet.ice.h,
+        )
 
     def _position(self, nodes: IntArray) -> Array:
         return self._place(nodes, self.sheet.state, self._t)
@@ -220,8 +244,9 @@ class SheetPort:
     def _place(self, nodes: IntArray, s: State, t: float) -> Array:
         """Positions of nodes in a state at a time, (n, 3) [m]."""
         x, y = self.sheet.grid.xy[nodes].T
-        return np.column_stack((x - self.setback + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1],
-                                self.z_mid + s.q[nodes, 0]))
+        return np.column_stack(
+            (x - self.setback + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1], self.z_mid + s.q[nodes, 0])
+        )
 
     @property
     def energy(self) -> dict[str, float]:
@@ -229,13 +254,25 @@ class SheetPort:
         e, v = self.sheet.energy, self.velocity
         friction, contact = e.rub.work + v * e.rub.push, e.touch.work + v * e.touch.push
         crushed = e.crushed.elastic + e.crushed.foundation + e.crushed.kinetic_at(v)
-        return {"drift_work": v * e.hold, "received_work": e.others.work + v * e.others.push,
-                "sheet_elastic": e.now.elastic, "sheet_foundation": e.now.foundation,
-                "sheet_kinetic": e.now.kinetic_at(v), "contact_friction_loss": -friction,
-                "contact_crushing_loss": friction - contact, "damping_loss": e.damping, "scheme_loss": e.scheme,
-                "fracture_loss": e.fracture, "edge_crushed_loss": crushed, "left_elastic": e.pieces.elastic,
-                "left_foundation": e.pieces.foundation, "left_kinetic": e.pieces.kinetic_at(v),
-                "contact_work": e.contact, "rubble_work": e.rubble, "sheet_energy_residual": e.residual}
+        return {
+            "drift_work": v * e.hold,
+            "received_work": e.others.work + v * e.others.push,
+            "sheet_elastic": e.now.elastic,
+            "sheet_foundation": e.now.foundation,
+            "sheet_kinetic": e.now.kinetic_at(v),
+            "contact_friction_loss": -friction,
+            "contact_crushing_loss": friction - contact,
+            "damping_loss": e.damping,
+            "scheme_loss": e.scheme,
+            "fracture_loss": e.fracture,
+            "edge_crushed_loss": crushed,
+            "left_elastic": e.pieces.elastic,
+            "left_foundation": e.pieces.foundation,
+            "left_kinetic": e.pieces.kinetic_at(v),
+            "contact_work": e.contact,
+            "rubble_work": e.rubble,
+            "sheet_energy_residual": e.residual,
+        }
 
     # ---- what others see --------------------------------------------------------------------------------------
 
@@ -272,8 +309,9 @@ class SheetPort:
             self._yielding_key = key
         return self._yields
 
-    def _edge(self, column: int, stiffness: tuple[float, float], inertia: tuple[float, float],
-              motion: Motion) -> SheetEdge:
+    def _edge(
+        self, column: int, stiffness: tuple[float, float], inertia: tuple[float, float], motion: Motion
+    ) -> SheetEdge:
         g, front = self.sheet.grid, int(self.edge.front[column])
         rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
         present = self.sheet.present[rows * g.ny + column]
@@ -282,8 +320,16 @@ class SheetPort:
         position, velocity = motion(nodes)
         self._check_apart(position)
         lead = float(self.edge.lead(rows[:1])[0])
-        return SheetEdge(position[:, 0], position[:, 2], float(position[0, 0]) + lead, velocity, self.sheet.ice.h,
-                         nodes, stiffness, inertia)
+        return SheetEdge(
+            position[:, 0],
+            position[:, 2],
+            float(position[0, 0]) + lead,
+            velocity,
+            self.sheet.ice.h,
+            nodes,
+            stiffness,
+            inertia,
+        )
 
     def _motion(self, nodes: IntArray) -> tuple[Array, Array]:
         """Position (n, 3) [m] and velocity in x and z (n, 2) [m/s] of nodes now."""
@@ -306,16 +352,25 @@ class SheetPort:
         passed = np.flatnonzero(np.diff(position[:, 0]) >= 0.0)
         if len(passed):
             x, y = position[passed[0], :2]
-            raise SimulationError(f"t = {self._t:.3f} s: parts of the floe overlap by a cell at x = {x:.2f}, "
-                                  f"y = {y:.2f} m, because cracks carry no pressure between parts that stay in the "
-                                  "lattice; use a larger floe, so that a free part of it becomes rubble")
+            raise SimulationError(
+                f"t = {self._t:.3f} s: parts of the floe overlap by a cell at x = {x:.2f}, "
+                f"y = {y:.2f} m, because cracks carry no pressure between parts that stay in the "
+                "lattice; use a larger floe, so that a free part of it becomes rubble"
+            )
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""
         g, live = self.sheet.grid, self.sheet.live_cells
         damage, utilisation = _at_nodes(g.cell_nodes, g.nodes, self.sheet.intact, live, self.sheet.utilisation)
-        return SheetView(self._position(np.arange(g.nodes)), damage, utilisation,
-                         self.sheet.present.copy(), live, (g.nx, g.ny), (g.nx - 1, g.ny - 1))
+        return SheetView(
+            self._position(np.arange(g.nodes)),
+            damage,
+            utilisation,
+            self.sheet.present.copy(),
+            live,
+            (g.nx, g.ny),
+            (g.nx - 1, g.ny - 1),
+        )
 
     # ---- events -----------------------------------------------------------------------------------------------
 
@@ -343,7 +398,7 @@ class SheetPort:
         return [sheet_events.lifted_out(round(self._t * NS), load, where, float(w[highest]), self.draft)]
 
 
-@njit(cache=True)
+@compiled()
 def _at_nodes(cell_nodes, nodes, intact, live, utilisation):
     """Share of failed cells and largest utilisation of live ones around each node, (nodes,) both."""
     every, failed, worst = np.zeros(nodes), np.zeros(nodes), np.zeros(nodes)

@@ -26,8 +26,10 @@ def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, seed: int) -
         if abs(lift - before) <= CHANGE * pile.force:
             sheet.rest_under(rubble.forces_on_sheet())
             return
-    raise SimulationError(f"initial rubble and sheet found no rest in {ROUNDS} rounds: the lift on the sheet still "
-                          f"changes from {before:.3g} to {lift:.3g} N; give less rubble (rubble.initial_volume)")
+    raise SimulationError(
+        f"initial rubble and sheet found no rest in {ROUNDS} rounds: the lift on the sheet still "
+        f"changes from {before:.3g} to {lift:.3g} N; give less rubble (rubble.initial_volume)"
+    )
 
 
 def _lift(forces: SheetForces) -> float:

@@ -16,15 +16,16 @@ from functools import cached_property
 from math import isfinite, pi, sqrt, tan
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
+
+from coupling.compiled import compiled
 
 Array = NDArray[np.float64]
 
 DEEP = 1000.0  #: depth of a structure that stands on the sea bed, out of reach of any ice [m]
 
 
-@njit(cache=True)
+@compiled()
 def overlap_of(x, y, z, profile_z, profile_r, revolved):
     """How far ice at x (m,) reaches behind the face at y (m, k) and z (m,), and normals of the face (m, k, 3).
 
@@ -100,7 +101,7 @@ class Structure:
         return np.interp(np.asarray(z, dtype=np.float64), self.z, self.r, left=np.nan, right=np.nan)
 
     def face_x(self, y: ArrayLike, z: ArrayLike) -> Array:
-        """x of the front face in the plane y at height z [m]; nan where the plane misses the structure."""
+        """X of the front face in the plane y at height z [m]; nan where the plane misses the structure."""
         r = self.radius(z)
         if not self.revolved:
             return -r + 0.0 * np.asarray(y, dtype=np.float64)
@@ -179,8 +180,15 @@ def _distinct(points: list[Array]) -> Array:
     return np.array(kept, dtype=np.float64).reshape(-1, 2)
 
 
-def cone(slope_rad: float, waterline_radius: float, neck_radius: float | None = None, *, top: float = 5.0,
-         toe_depth: float | None = None, breaking: str = "downward") -> Structure:
+def cone(
+    slope_rad: float,
+    waterline_radius: float,
+    neck_radius: float | None = None,
+    *,
+    top: float = 5.0,
+    toe_depth: float | None = None,
+    breaking: str = "downward",
+) -> Structure:
     """A cone with slope ``slope_rad`` from the horizontal and radius ``waterline_radius`` at z = 0.
 
     ``downward``: narrows with depth, r = R + z / tan(slope), down to the neck, a vertical cylinder that ends at
@@ -205,8 +213,9 @@ def cone(slope_rad: float, waterline_radius: float, neck_radius: float | None = 
     raise ValueError(f"breaking is '{breaking}'; choose 'downward' or 'upward'")
 
 
-def plane_slope(slope_rad: float, *, top: float = 5.0, toe_depth: float = DEEP,
-                breaking: str = "downward") -> Structure:
+def plane_slope(
+    slope_rad: float, *, top: float = 5.0, toe_depth: float = DEEP, breaking: str = "downward"
+) -> Structure:
     """A slope of infinite width through the waterline at x = 0: x = -z / tan(slope), or +z / tan(slope) if upward."""
     if breaking not in ("downward", "upward"):
         raise ValueError(f"breaking is '{breaking}'; choose 'downward' or 'upward'")
@@ -226,8 +235,9 @@ def _checked_neck(neck_radius: float | None, waterline_radius: float) -> float:
     if not waterline_radius > 0:
         raise ValueError(f"waterline radius is {waterline_radius:g} m; it must be > 0")
     if neck_radius is not None and not 0 < neck_radius < waterline_radius:
-        raise ValueError(f"neck radius is {neck_radius:g} m; it must be > 0 and below the waterline radius "
-                         f"{waterline_radius:g} m")
+        raise ValueError(
+            f"neck radius is {neck_radius:g} m; it must be > 0 and below the waterline radius {waterline_radius:g} m"
+        )
     return neck_radius or 0.0
 
 

@@ -45,8 +45,11 @@ def out_of_plane_springs(springs: Springs, d: float) -> Array:
         shear[[3 * a + 1 + along, 3 * b + 1 + along]] = 0.5 * d
         bend[3 * b + 1 + along], bend[3 * a + 1 + along] = 1.0, -1.0
         twist[3 * b + 2 - along], twist[3 * a + 2 - along] = 1.0, -1.0
-        rows += [np.sqrt(0.5 * springs.K_out) * shear, np.sqrt(0.5 * springs.G_r_axi) * bend,
-                 np.sqrt(0.5 * springs.G_t_axi) * twist]
+        rows += [
+            np.sqrt(0.5 * springs.K_out) * shear,
+            np.sqrt(0.5 * springs.G_r_axi) * bend,
+            np.sqrt(0.5 * springs.G_t_axi) * twist,
+        ]
     for a, b, sign in DIAGONAL:
         row = np.zeros(12)
         row[3 * b + 1 : 3 * b + 3] = 1.0, sign

@@ -29,7 +29,7 @@ def plate_stiffness(ice: Ice, kx: ArrayLike, ky: ArrayLike) -> Array:
 
 
 def plate_mass(ice: Ice) -> Array:
-    """rho h and twice rho h^3 / 12, left sides of (2.18)-(2.20), (3,)."""
+    """Rho h and twice rho h^3 / 12, left sides of (2.18)-(2.20), (3,)."""
     m = ice.rho_i * ice.h
     return m * np.array([1.0, ice.h**2 / 12.0, ice.h**2 / 12.0])
 
@@ -54,8 +54,16 @@ def eigenfrequencies(ice: Ice, Lx: float, Ly: float, count: int) -> Array:
     return np.sort(branch.ravel())[:count] / (2.0 * np.pi)
 
 
-def navier(ice: Ice, sides: tuple[float, float], load_at: tuple[float, float], at: Array, omega: Array | float,
-           c: float = 0.0, alpha: float = 0.0, terms: tuple[int, int] | None = None) -> Array:
+def navier(
+    ice: Ice,
+    sides: tuple[float, float],
+    load_at: tuple[float, float],
+    at: Array,
+    omega: Array | float,
+    c: float = 0.0,
+    alpha: float = 0.0,
+    terms: tuple[int, int] | None = None,
+) -> Array:
     """Response of the simply supported plate to a unit point load cos(omega t), (A.1.8)-(A.1.10).
 
     ``sides`` and ``load_at`` in m, ``at`` (points, 2) [m], ``omega`` (frequencies,) [rad/s], ``c`` hydrodynamic damping
@@ -87,5 +95,5 @@ def _amplitudes(K: Array, inertia: Array, foundation: complex) -> Array:
 
 
 def hydrodynamic_damping(ice: Ice, fraction: float) -> float:
-    """c as a fraction of sqrt(k_s rho h), the scale of sections 2.5.3 and 4.2.1 [N s/m3]."""
+    """C as a fraction of sqrt(k_s rho h), the scale of sections 2.5.3 and 4.2.1 [N s/m3]."""
     return fraction * float(np.sqrt(ice.k_f * ice.rho_i * ice.h))

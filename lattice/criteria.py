@@ -12,8 +12,8 @@ names, the criterion is the same.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from lattice.compiled import compiled
 from lattice.grid import Array, Grid
 from lattice.ice import Ice
 
@@ -24,7 +24,7 @@ def mohr_factors(nu: float, strength_ratio: float) -> tuple[float, float]:
     return (1.0 + nu) / (1.0 - nu) * q, (1.0 + q) * (1.0 + nu) / 2.0
 
 
-@njit(cache=True)
+@compiled()
 def cell_strains(cell_nodes, d, u, q):
     """Membrane strain and curvature of each cell from node displacements u (n, 2) and q (n, 3).
 
@@ -43,7 +43,7 @@ def cell_strains(cell_nodes, d, u, q):
     return out
 
 
-@njit(cache=True)
+@compiled()
 def mohr(strains, fibre):
     """Mean and radius of Mohr's circle at the top and at the bottom, (4.17)-(4.20): (cells, 4).
 
@@ -70,8 +70,10 @@ def tensile_utilisation(mean: Array, radius: Array, limit: Array | float, ice: I
 def combined_utilisation(strains: Array, limit: Array | float, ice: Ice) -> Array:
     """Combined tension and bending: the larger utilisation of the two faces, (4.6) with (4.17)-(4.20), (cells,)."""
     circle = mohr(strains, 0.5 * ice.h * ice.sigma_t / ice.sigma_f)
-    return np.maximum(tensile_utilisation(circle[:, 0], circle[:, 1], limit, ice),
-                      tensile_utilisation(circle[:, 2], circle[:, 3], limit, ice))
+    return np.maximum(
+        tensile_utilisation(circle[:, 0], circle[:, 1], limit, ice),
+        tensile_utilisation(circle[:, 2], circle[:, 3], limit, ice),
+    )
 
 
 RING = ((0, 0), (0, 1), (0, 2), (1, 2), (2, 2), (2, 1), (2, 0), (1, 0))  #: the eight neighbours, going round

@@ -68,6 +68,7 @@ def normalised_load(ratio: Array, n: int = 120) -> Array:
     """
     ratio = np.atleast_1d(np.asarray(ratio, dtype=float))
     if ratio.min() < 0.05 or ratio.max() > 0.9:
-        raise ValueError(f"crack lengths a/L = {ratio.min():g} to {ratio.max():g} leave the range 0.05 to 0.9 "
-                         "of the reference")
+        raise ValueError(
+            f"crack lengths a/L = {ratio.min():g} to {ratio.max():g} leave the range 0.05 to 0.9 of the reference"
+        )
     return _curve(n, tuple(ratio.tolist()))

@@ -20,15 +20,15 @@ from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 
+from lattice.compiled import compiled
 from lattice.engine import GAMMA, Engine, State, Step, point_displacement
 from lattice.grid import Array, IntArray
 from lattice.springs import pull_on, spring_energy
 from lattice.stock import Served, Stock, Work
 
 
-@njit(cache=True)
+@compiled()
 def weighted_square(weight, x, present):
     """Sum of weight x^2 over the nodes that are present; ``weight`` (n k,), ``x`` (n, k)."""
     total, k = 0.0, x.shape[1]
@@ -39,7 +39,7 @@ def weighted_square(weight, x, present):
     return total
 
 
-@njit(cache=True)
+@compiled()
 def momentum_of(mass, u_dot, present):
     """Momentum along x of the nodes that are present [N s]; ``mass`` (2 n,), ``u_dot`` (n, 2)."""
     total = 0.0
@@ -112,8 +112,9 @@ class EnergyBooks:
     def springs(self, u: Array, q: Array, live: np.ndarray) -> float:
         """Elastic energy of live cells [J]."""
         e = self.engine
-        return float(spring_energy(e.dof_u, *e.sparse_u, live, u.ravel())
-                     + spring_energy(e.dof_q, *e.sparse_q, live, q.ravel()))
+        return float(
+            spring_energy(e.dof_u, *e.sparse_u, live, u.ravel()) + spring_energy(e.dof_q, *e.sparse_q, live, q.ravel())
+        )
 
     def begin(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
         """Starts from a deflected state: the work that brought the sheet there counts as the rubble's."""
@@ -126,8 +127,13 @@ class EnergyBooks:
 
     def _stock(self, s: State, live: np.ndarray, present: np.ndarray) -> Stock:
         mass = self.engine.M_u
-        return Stock(self.springs(s.u, s.q, live), self._foundation(s.q, present), self._kinetic(s, present),
-                     float(momentum_of(mass, s.u_dot, present)), float(mass[::2][present].sum()))
+        return Stock(
+            self.springs(s.u, s.q, live),
+            self._foundation(s.q, present),
+            self._kinetic(s, present),
+            float(momentum_of(mass, s.u_dot, present)),
+            float(mass[::2][present].sum()),
+        )
 
     def holding(self, u: Array, u_dot: Array, force_u: Array, live: np.ndarray) -> float:
         """Force along x that the held nodes need beside the springs and ``force_u`` (n, 2) [N]."""
@@ -142,8 +148,9 @@ class EnergyBooks:
     def _foundation(self, q: Array, present: np.ndarray) -> float:
         return 0.5 * float(weighted_square(self.engine.k_f, q, present))
 
-    def book_step(self, step: Step, force_u: Array, force_q: Array, nodes: IntArray, live: np.ndarray,
-                  present: np.ndarray) -> None:
+    def book_step(
+        self, step: Step, force_u: Array, force_q: Array, nodes: IntArray, live: np.ndarray, present: np.ndarray
+    ) -> None:
         """Books one accepted step; ``nodes`` are those of the contact."""
         e, dt = self.engine, step.dt
         norms = []

@@ -159,8 +159,16 @@ class Engine:
 
     _written: tuple[str, ...] = ("_intact", "_systems")  #: see `memory.remember`
 
-    def __init__(self, grid: Grid, ice: Ice, springs: Springs, *, held_in_plane: np.ndarray, damping: float = 0.0,
-                 alpha: float = 0.0):
+    def __init__(
+        self,
+        grid: Grid,
+        ice: Ice,
+        springs: Springs,
+        *,
+        held_in_plane: np.ndarray,
+        damping: float = 0.0,
+        alpha: float = 0.0,
+    ):
         """``held_in_plane`` (nodes,) nodes held in x and y, or (nodes, 2) each direction on its own.
 
         ``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27).
@@ -187,8 +195,15 @@ class Engine:
             scale = 1.0 + self.alpha / a
             self._systems[dt] = (
                 CrackedSystem(self.grid, self.rows_u, self._intact, self.M_u / a**2, scale, self._held),
-                CrackedSystem(self.grid, self.rows_q, self._intact, self.M_q / a**2 + self.C_q / a + self.k_f, scale,
-                              np.zeros(3 * self.grid.nodes, bool)))
+                CrackedSystem(
+                    self.grid,
+                    self.rows_q,
+                    self._intact,
+                    self.M_q / a**2 + self.C_q / a + self.k_f,
+                    scale,
+                    np.zeros(3 * self.grid.nodes, bool),
+                ),
+            )
         self._in, self._out = self._systems[dt]
 
     def save(self) -> Memory:
@@ -221,8 +236,12 @@ class Engine:
         self.use(dt)
         first = self._euler(t + self._a, state, force_u, force_q, contact)
         back, s1 = (1.0 - GAMMA) * dt, first.state
-        start = State(state.u + back * s1.u_dot, state.q + back * s1.q_dot,
-                      state.u_dot + back * first.u_acc, state.q_dot + back * first.q_acc)
+        start = State(
+            state.u + back * s1.u_dot,
+            state.q + back * s1.q_dot,
+            state.u_dot + back * first.u_acc,
+            state.q_dot + back * first.q_acc,
+        )
         return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)), contact.height)
 
     def _euler(self, t: float, s: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Stage:
@@ -262,7 +281,6 @@ class Engine:
             if np.linalg.norm(residual) <= 1e-10 * np.linalg.norm(y - free) + CLOSED:
                 return f
         raise StepError(f"contact of the sheet's edge found no equilibrium at t = {t:.4f} s: use a shorter window")
-
 
     def _compliance(self, n: IntArray, z: Array) -> Array:
         """Of the points at height z (m,) of nodes n (m,), (m, 3, m, 3) [m/N]: T C T^T with y = T x, of both systems."""

@@ -37,15 +37,27 @@ class ExplicitEngine(Engine):
     Nothing in its arrays outlives a window: `set_cells` and `start` fill them.
     """
 
-    def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, held_in_plane: np.ndarray,
-                 damping: float = 0.0, alpha: float = 0.0, step: float | None = None):
+    def __init__(
+        self,
+        grid: Grid,
+        ice: Ice,
+        springs: Springs,
+        window: float,
+        *,
+        held_in_plane: np.ndarray,
+        damping: float = 0.0,
+        alpha: float = 0.0,
+        step: float | None = None,
+    ):
         """``window`` [s] is cut into equal sub-steps of at most ``step`` [s] (default: `SHARE_OF_CRITICAL`)."""
         super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha)
         self.critical = self._critical_step()
         self._springs, self._longest = springs, step
         if step is not None and not 0.0 < step <= self.critical:
-            raise ValueError(f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
-                             f"{self.critical:.3g} s (largest frequency of the lattice, damping included)")
+            raise ValueError(
+                f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
+                f"{self.critical:.3g} s (largest frequency of the lattice, damping included)"
+            )
         self.damping = damping
         self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
         self.set_window(window)
@@ -78,11 +90,22 @@ class ExplicitEngine(Engine):
         for k, kick in enumerate((free, dt / self.M_q[::3], dt / self.M_q[1::3])):
             self._kick[k, :, : g.ny] = kick.reshape(g.nx, g.ny)
         np.divide(dt, self._kick, out=self._mass, where=self._kick > 0.0)
-        self._spring = np.array([0.5 * s.K_n_axi, 0.5 * s.K_s_axi, 0.5 * s.K_out, 0.5 * s.G_r_axi, 0.5 * s.G_t_axi,
-                                 0.5 * s.K_n_dia, 0.5 * s.G_dia, 0.5 * g.d])
+        self._spring = np.array(
+            [
+                0.5 * s.K_n_axi,
+                0.5 * s.K_s_axi,
+                0.5 * s.K_out,
+                0.5 * s.G_r_axi,
+                0.5 * s.G_t_axi,
+                0.5 * s.K_n_dia,
+                0.5 * s.G_dia,
+                0.5 * g.d,
+            ]
+        )
         per_mass = dt / (ice.rho_i * ice.h)
-        self._pace = np.array([self.alpha, dt + self.alpha, per_mass * ice.k_f,
-                               per_mass * (self.damping - self.alpha * ice.k_f)])
+        self._pace = np.array(
+            [self.alpha, dt + self.alpha, per_mass * ice.k_f, per_mass * (self.damping - self.alpha * ice.k_f)]
+        )
         F_1, self._F_2 = mohr_factors(ice.nu, np.inf if np.isinf(ice.sigma_t) else ice.sigma_c / ice.sigma_t)
         ratio = 1.0 if ice.sigma_t == ice.sigma_f else ice.sigma_t / ice.sigma_f
         self._crack = np.array([F_1, 0.5 * ice.h * ratio])
@@ -114,11 +137,16 @@ class ExplicitEngine(Engine):
         """The state now under these forces; nodes that have left keep theirs."""
         after = self._next_velocity(self.y.copy(), self.v, forces)
         v, jump = 0.5 * (self.v + after), self._get(after - self.v)
-        self.ripple = 0.125 * float((self.M_u * jump[:, :2].ravel() ** 2).sum()
-                                    + (self.M_q * jump[:, 2:].ravel() ** 2).sum())
+        self.ripple = 0.125 * float(
+            (self.M_u * jump[:, :2].ravel() ** 2).sum() + (self.M_q * jump[:, 2:].ravel() ** 2).sum()
+        )
         x, x_dot, on = self._get(self.y - self.alpha * self.v), self._get(v), present[:, None]
-        return State(np.where(on, x[:, :2], old.u), np.where(on, x[:, 2:], old.q),
-                     np.where(on, x_dot[:, :2], old.u_dot), np.where(on, x_dot[:, 2:], old.q_dot))
+        return State(
+            np.where(on, x[:, :2], old.u),
+            np.where(on, x[:, 2:], old.q),
+            np.where(on, x_dot[:, :2], old.u_dot),
+            np.where(on, x_dot[:, 2:], old.q_dot),
+        )
 
     def _next_velocity(self, y: Array, v: Array, forces: tuple[NodeForces, ...]) -> Array:
         v = v.copy()
@@ -135,7 +163,7 @@ class ExplicitEngine(Engine):
         return array[:, : self.grid.nx, : self.grid.ny].reshape(5, -1).T
 
     def displacement(self, ago: float = 0.0) -> tuple[Array, Array]:
-        """u (n, 2) and q (n, 3) now, or ``ago`` sub-steps before, up to one."""
+        """U (n, 2) and q (n, 3) now, or ``ago`` sub-steps before, up to one."""
         x = self._get(self.y - (self.alpha + ago * self.dt) * self.v)
         return np.ascontiguousarray(x[:, :2]), np.ascontiguousarray(x[:, 2:])
 
@@ -159,8 +187,13 @@ class ExplicitEngine(Engine):
     def contact_at(self, t: float, contact: EdgeContact, at: Array) -> NodeForces:
         """The same for displacements ``at`` (m, 3) of the points of action [m]."""
         force, tangent = contact.evaluate(t, np.ascontiguousarray(at))
-        return NodeForces(*np.divmod(contact.nodes, self.grid.ny), force, np.ascontiguousarray(at), tangent,
-                          np.ascontiguousarray(contact.height))
+        return NodeForces(
+            *np.divmod(contact.nodes, self.grid.ny),
+            force,
+            np.ascontiguousarray(at),
+            tangent,
+            np.ascontiguousarray(contact.height),
+        )
 
     def at(self, nodes: IntArray) -> Array:
         """Displacements of some nodes now, (k, 5)."""
@@ -171,9 +204,32 @@ class ExplicitEngine(Engine):
         """Up to ``steps`` sub-steps, to the first failure; damping is taken stock of in each or in the first only."""
         m = len(contact.row)
         total, books = np.zeros((m, 3)), np.zeros(3)
-        made, count = march(steps, 1 if lively else steps, self.y, self.v, self._scratch, self._cells, self._kick,
-                            self._mass, self._limit, self._spring, self._pace, self._crack, self._rows, load.row,
-                            load.column, load.force, contact.row, contact.column, contact.height, contact.at,
-                            contact.force, contact.tangent, np.zeros((m, 5)), total, books)
+        made, count = march(
+            steps,
+            1 if lively else steps,
+            self.y,
+            self.v,
+            self._scratch,
+            self._cells,
+            self._kick,
+            self._mass,
+            self._limit,
+            self._spring,
+            self._pace,
+            self._crack,
+            self._rows,
+            load.row,
+            load.column,
+            load.force,
+            contact.row,
+            contact.column,
+            contact.height,
+            contact.at,
+            contact.force,
+            contact.tangent,
+            np.zeros((m, 5)),
+            total,
+            books,
+        )
         loss = books[2] * (1 if lively else made)
         return Marched(made, count > 0, total / made, self.dt * books[0], self.dt * books[1], loss)

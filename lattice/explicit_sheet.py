@@ -37,13 +37,25 @@ class ExplicitSheet(Sheet):
 
     _written = (*Sheet._written, "failure_times", "failed_cells")
 
-    def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
-                 alpha: float = 0.0, share: float = 0.2, step: float | None = None,
-                 contact_time: float = CONTACT_TIME):
+    def __init__(
+        self,
+        grid: Grid,
+        ice: Ice,
+        springs: Springs,
+        dt: float,
+        *,
+        held: np.ndarray,
+        damping: float = 0.0,
+        alpha: float = 0.0,
+        share: float = 0.2,
+        step: float | None = None,
+        contact_time: float = CONTACT_TIME,
+    ):
         """As `Sheet`; ``step`` is the largest sub-step [s] (default: a share of the critical one)."""
         super().__init__(grid, ice, springs, dt, held=held, damping=damping, alpha=alpha, share=share)
-        self.engine: ExplicitEngine = ExplicitEngine(grid, ice, springs, dt, held_in_plane=held, damping=damping,
-                                                     alpha=alpha, step=step)
+        self.engine: ExplicitEngine = ExplicitEngine(
+            grid, ice, springs, dt, held_in_plane=held, damping=damping, alpha=alpha, step=step
+        )
         self.energy = EnergyBooks(self.engine)
         self._contact_time = contact_time
         self.support = Support(self.engine, held)
@@ -61,8 +73,9 @@ class ExplicitSheet(Sheet):
             self.engine.set_window(dt)
             self.block = max(1, int(self._contact_time / self.engine.dt))
 
-    def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
-                release: Callable[[IntArray], None]) -> Outcome:
+    def advance(
+        self, t: float, force_u: Array, force_q: Array, contact: EdgeContact, release: Callable[[IntArray], None]
+    ) -> Outcome:
         """One window from time t, as `Sheet.advance`; `release` is called with the state of that instant.
 
         The mean contact force has a row for each node of the contact, then one for each node that left with force.
@@ -84,8 +97,9 @@ class ExplicitSheet(Sheet):
         self._means(out, impulse / self.dt, contact.nodes)
         mean = State(self._u_sum / self.dt, self._q_sum / self.dt, start.u_dot, start.q_dot)
         applied = tuple((self._applied / self.dt).tolist())
-        out.reaction = between(self.support, start, self.state, self.dt, Mean(mean, mean, 1.0, 0.0), self.live_cells,
-                               present, applied)
+        out.reaction = between(
+            self.support, start, self.state, self.dt, Mean(mean, mean, 1.0, 0.0), self.live_cells, present, applied
+        )
         return out
 
     def _loads(self, force_u: Array, force_q: Array) -> NodeForces:
@@ -143,8 +157,15 @@ class ExplicitSheet(Sheet):
 
     # ---- failure -----------------------------------------------------------------------------------------------
 
-    def _break(self, t: float, done: int, loads: tuple[NodeForces, ...], contact: EdgeContact, out: Outcome,
-               release: Callable[[IntArray], None]) -> None:
+    def _break(
+        self,
+        t: float,
+        done: int,
+        loads: tuple[NodeForces, ...],
+        contact: EdgeContact,
+        out: Outcome,
+        release: Callable[[IntArray], None],
+    ) -> None:
         """Takes out the cells that reached their limit in the last sub-step, in the order in which they did."""
         e, now = self.engine, t + done * self.engine.dt
         cells, share = self._overloaded()

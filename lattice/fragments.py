@@ -21,8 +21,14 @@ def components(grid: Grid, intact: np.ndarray) -> IntArray:
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
-def loose_pieces(grid: Grid, intact: np.ndarray, present: np.ndarray, held: np.ndarray, share: float,
-                 turned: np.ndarray | None = None) -> tuple[list[IntArray], int]:
+def loose_pieces(
+    grid: Grid,
+    intact: np.ndarray,
+    present: np.ndarray,
+    held: np.ndarray,
+    share: float,
+    turned: np.ndarray | None = None,
+) -> tuple[list[IntArray], int]:
     """Pieces that leave the lattice, and the number of parts that stay.
 
     A piece leaves when none of its nodes is held and its area is below `share` of the whole floe; a larger free part

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 from lattice.assembly import cell_dof
+from lattice.compiled import compiled
 from lattice.grid import Array, Grid, IntArray
 
 LEAF = 4  #: largest side of a leaf in nodes
@@ -100,12 +100,21 @@ def dissect(grid: Grid, per_node: int) -> Dissection:
     wide = lambda a: (a[..., None] * per_node + spread).reshape(*a.shape[:-1], -1)  # noqa: E731
     w, m = sizes * per_node, m * per_node
     return Dissection(
-        wide(nodes), first * per_node, wide(np.concatenate(edges)), np.concatenate(([0], np.cumsum(m))),
-        np.array([c for _, c in fronts]), cell_at, cells, wide(node_place).reshape(dof.shape),
-        np.concatenate(([0], np.cumsum(w * (w + m)))), int(deepest) * per_node**2, int((w + m).max()))
+        wide(nodes),
+        first * per_node,
+        wide(np.concatenate(edges)),
+        np.concatenate(([0], np.cumsum(m))),
+        np.array([c for _, c in fronts]),
+        cell_at,
+        cells,
+        wide(node_place).reshape(dof.shape),
+        np.concatenate(([0], np.cumsum(w * (w + m)))),
+        int(deepest) * per_node**2,
+        int((w + m).max()),
+    )
 
 
-@njit(cache=True)
+@compiled()
 def factorise(first, edge, edge_at, children, cell_at, live, place, panel_at, stack_size, K_cell, diagonal, held):
     """Panels of all fronts, flat; ``live`` in the order of the cells, ``diagonal`` and ``held`` of the dof."""
     panels = np.empty(panel_at[-1])
@@ -158,7 +167,7 @@ def factorise(first, edge, edge_at, children, cell_at, live, place, panel_at, st
     return panels
 
 
-@njit(cache=True)
+@compiled()
 def inverse_of_factor(L):
     """Inverse of a lower triangle."""
     n = len(L)
@@ -171,7 +180,7 @@ def inverse_of_factor(L):
     return W
 
 
-@njit(cache=True)
+@compiled()
 def substitute(first, edge, edge_at, panel_at, panels, x, work):
     """Forward and backward substitution in place, x (n,) in the order of elimination."""
     fronts = len(first) - 1
@@ -195,7 +204,7 @@ def substitute(first, edge, edge_at, panel_at, panels, x, work):
         np.dot(P.T, z, x[a:b])
 
 
-@njit(cache=True)
+@compiled()
 def substitute_many(first, edge, edge_at, panel_at, panels, x):
     """As `substitute` for right sides (n, k), in place."""
     fronts, r = len(first) - 1, x.shape[1]
@@ -225,12 +234,24 @@ class Factors:
     def __init__(self, grid: Grid, K_cell: Array, live: np.ndarray, diagonal: Array, held: np.ndarray):
         s = self._s = dissect(grid, K_cell.shape[0] // 4)
         self._held = np.flatnonzero(held[s.order])
-        self._panels = factorise(s.first, s.edge, s.edge_at, s.children, s.cell_at, live[s.cells], s.place, s.panel_at,
-                                 s.stack, np.ascontiguousarray(K_cell), diagonal[s.order], held[s.order])
+        self._panels = factorise(
+            s.first,
+            s.edge,
+            s.edge_at,
+            s.children,
+            s.cell_at,
+            live[s.cells],
+            s.place,
+            s.panel_at,
+            s.stack,
+            np.ascontiguousarray(K_cell),
+            diagonal[s.order],
+            held[s.order],
+        )
         self._work = np.empty(s.widest)
 
     def solve(self, b: Array) -> Array:
-        """x for right sides (n,) or (n, k)."""
+        """X for right sides (n,) or (n, k)."""
         s = self._s
         y = np.ascontiguousarray(b[s.order])
         y[self._held] = 0.0

@@ -35,8 +35,10 @@ class Grid:
             raise ValueError(f"a lattice of {nx} x {ny} nodes has no cell: use at least 2 x 2")
         dx, dy = Lx / (nx - 1), Ly / (ny - 1)
         if abs(dx - dy) > 1e-6 * dx:
-            raise ValueError(f"{nx} x {ny} nodes on {Lx:g} m x {Ly:g} m give cells of {dx:g} m x {dy:g} m: "
-                             f"cells must be square, for example {nx} x {round(Ly / dx) + 1} nodes")
+            raise ValueError(
+                f"{nx} x {ny} nodes on {Lx:g} m x {Ly:g} m give cells of {dx:g} m x {dy:g} m: "
+                f"cells must be square, for example {nx} x {round(Ly / dx) + 1} nodes"
+            )
         return cls(nx, ny, dx, x0, y0)
 
     @property

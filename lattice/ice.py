@@ -74,8 +74,10 @@ class Ice:
         if test is None:
             return self.sigma_f
         if d >= 2.0 * test.width:
-            raise ValueError(f"cell size {d:g} m is not below twice the width of the beam test ({test.width:g} m), "
-                             "where (4.31) ends: refine the mesh")
+            raise ValueError(
+                f"cell size {d:g} m is not below twice the width of the beam test ({test.width:g} m), "
+                "where (4.31) ends: refine the mesh"
+            )
         sigma_beam = 6.0 * test.failure_load * test.length / (test.width * self.h**2)  # (4.27)
         ratio = d / test.width
         return sigma_beam * 0.5 * (1.0 / np.sqrt(ratio) + 1.0 / np.sqrt(2.0 - ratio)) * test.factor

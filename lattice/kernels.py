@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 
-from numba import njit
+from lattice.compiled import compiled
 
 LANES = 8  #: doubles in the widest vector
 LINE = 1048  #: distance of the lines of ``rows``: an odd number of cache lines, so that they use all sets of a cache
@@ -39,7 +39,7 @@ A1, A2, A3 = "float64[::1]", "float64[:, ::1]", "float64[:, :, ::1]"
 I1 = "int64[::1]"
 
 
-@njit(f"void(int64, int64, {A3}, {A2}, {A1}, {A1})", cache=True, nogil=True)
+@compiled(f"void(int64, int64, {A3}, {A2}, {A1}, {A1})", nogil=True)
 def connections(i, ny, y, intact, spring, rows):
     """Forces of the connections from row i along x, along y and along both diagonals, (2.2)-(2.5) and chapter 3."""
     kn, ks, ko, gr, gt = spring[0], spring[1], spring[2], spring[3], spring[4]
@@ -67,7 +67,7 @@ def connections(i, ny, y, intact, spring, rows):
         rows[G2 + j] = gd * cell * (b3 - c3 - b4 + c4)
 
 
-@njit(f"void(int64, int64, {A3}, {A3}, {A3}, {A1}, {A1}, {A1})", cache=True, nogil=True)
+@compiled(f"void(int64, int64, {A3}, {A3}, {A3}, {A1}, {A1}, {A1})", nogil=True)
 def gather(i, ny, y, v, kick, spring, pace, rows):
     """Every node of row i sums its connections and moves; what row i + 1 gets from them is left in C0 to C4."""
     half, alpha, go, buoy, drag = spring[7], pace[0], pace[1], pace[2], pace[3]
@@ -105,7 +105,7 @@ def gather(i, ny, y, v, kick, spring, pace, rows):
         y[4, i, j] += go * v[4, i, j] - alpha * old
 
 
-@njit(f"void({A3}, {A3}, {A2}, {A3}, {A1}, {A1}, {A1})", cache=True, nogil=True)
+@compiled(f"void({A3}, {A3}, {A2}, {A3}, {A1}, {A1}, {A1})", nogil=True)
 def sweep(y, v, intact, kick, spring, pace, rows):
     """One step of all nodes without external forces, in place."""
     nx, ny = kick.shape[1], kick.shape[2]
@@ -115,7 +115,7 @@ def sweep(y, v, intact, kick, spring, pace, rows):
         gather(i, ny, y, v, kick, spring, pace, rows)
 
 
-@njit(f"int64({A3}, {A3}, {A2}, {A1}, float64)", cache=True, nogil=True)
+@compiled(f"int64({A3}, {A3}, {A2}, {A1}, float64)", nogil=True)
 def overloaded(y, v, limit, crack, alpha):
     """How many faces of cells reach F_1 mean + R >= limit, (4.6) with (4.17)-(4.20); what is not a number counts.
 
@@ -141,7 +141,7 @@ def overloaded(y, v, limit, crack, alpha):
     return count
 
 
-@njit(f"void({I1}, {I1}, {A2}, {A3}, {A3}, {A3}, float64)", cache=True, nogil=True)
+@compiled(f"void({I1}, {I1}, {A2}, {A3}, {A3}, {A3}, float64)", nogil=True)
 def push(row, column, force, y, v, kick, go):
     """Adds forces (k, 5) on single nodes to the step that `sweep` has just made; go = dt + alpha."""
     for k in range(len(row)):

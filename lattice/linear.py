@@ -74,7 +74,7 @@ class CrackedSystem:
         return (self._rows @ x.reshape(len(x), -1)[self._dof[self._cells]]).reshape(-1, *x.shape[1:])
 
     def solve(self, b: Array) -> Array:
-        """x for a right side b over all degrees of freedom, held ones come back as 0, (n,)."""
+        """X for a right side b over all degrees of freedom, held ones come back as 0, (n,)."""
         self._update()
         return self._corrected(self._lu.solve(b))
 
@@ -99,7 +99,7 @@ class CrackedSystem:
         return G
 
     def response(self, dof: IntArray, b: Array) -> Array:
-        """x for a right side b (m,) that acts on `dof` only, (n,); from the columns that `compliance` keeps."""
+        """X for a right side b (m,) that acts on `dof` only, (n,); from the columns that `compliance` keeps."""
         self._update()
         self._keep_columns(dof)
         return self._corrected(self._point_columns @ b)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 
+from lattice.compiled import compiled
 from lattice.grid import Array, IntArray
 from lattice.kernels import A1, A2, A3, I1, overloaded, push, sweep
 
@@ -41,7 +41,7 @@ class Marched:
     loss: float  #: taken by hydrodynamic and material damping [J]
 
 
-@njit(f"void({I1}, {I1}, {A1}, {A2}, {A2}, {A3}, {A2}, {A3}, {A3}, float64)", cache=True, nogil=True)
+@compiled(f"void({I1}, {I1}, {A1}, {A2}, {A2}, {A3}, {A2}, {A3}, {A3}, float64)", nogil=True)
 def contact_force(row, column, height, at, force, tangent, now, y, v, alpha):
     """Contact at ``height`` above its nodes, linear about the displacement ``at``: into ``now`` (m, 5) [N], [N m]."""
     for k in range(len(row)):
@@ -57,7 +57,7 @@ def contact_force(row, column, height, at, force, tangent, now, y, v, alpha):
             now[k, a + 3] = height[k] * now[k, a]
 
 
-@njit(f"void({A3}, {A3}, {A3}, {A3}, {A2}, {A3}, {A1}, {A1}, {A1})", cache=True, nogil=True)
+@compiled(f"void({A3}, {A3}, {A3}, {A3}, {A2}, {A3}, {A1}, {A1}, {A1})", nogil=True)
 def damped(v, before, y, after, intact, kick, spring, pace, rows):
     """Velocities ``after`` a sub-step in which nothing but damping acts; ``before`` becomes a copy of v."""
     before[:] = v
@@ -68,7 +68,7 @@ def damped(v, before, y, after, intact, kick, spring, pace, rows):
     sweep(y, after, intact, kick, spring, water, rows)
 
 
-@njit(f"float64({A3}, {A3}, {A3}, {A3})", cache=True, nogil=True)
+@compiled(f"float64({A3}, {A3}, {A3}, {A3})", nogil=True)
 def dissipated(v, before, after, mass):
     """Work that damping took in a sub-step [J]: mass x loss of velocity x mean velocity, exact for leapfrog."""
     work = 0.0
@@ -82,7 +82,7 @@ def dissipated(v, before, after, mass):
     return work
 
 
-@njit(f"float64({I1}, {I1}, {A2}, {A3})", cache=True, nogil=True)
+@compiled(f"float64({I1}, {I1}, {A2}, {A3})", nogil=True)
 def power(row, column, force, v):
     """Of forces (k, 5) on single nodes [W]."""
     total = 0.0
@@ -92,13 +92,40 @@ def power(row, column, force, v):
     return total
 
 
-MARCH = (f"UniTuple(int64, 2)(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A3}, {A2}, {A1}, "
-         f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A1}, {A2}, {A2}, {A3}, {A2}, {A2}, {A1})")
+MARCH = (
+    f"UniTuple(int64, 2)(int64, int64, {A3}, {A3}, float64[:, :, :, ::1], {A2}, {A3}, {A3}, {A2}, {A1}, "
+    f"{A1}, {A1}, {A1}, {I1}, {I1}, {A2}, {I1}, {I1}, {A1}, {A2}, {A2}, {A3}, {A2}, {A2}, {A1})"
+)
 
 
-@njit(MARCH, cache=True, nogil=True)
-def march(steps, stride, y, v, scratch, intact, kick, mass, limit, spring, pace, crack, rows, row, column, force,
-          touch_row, touch_column, height, at, touch, tangent, now, total, books):
+@compiled(MARCH, nogil=True)
+def march(
+    steps,
+    stride,
+    y,
+    v,
+    scratch,
+    intact,
+    kick,
+    mass,
+    limit,
+    spring,
+    pace,
+    crack,
+    rows,
+    row,
+    column,
+    force,
+    touch_row,
+    touch_column,
+    height,
+    at,
+    touch,
+    tangent,
+    now,
+    total,
+    books,
+):
     """Up to ``steps`` sub-steps; stops after the first one at whose end a cell is overloaded.
 
     ``force`` (k, 5) on the nodes (row, column) is constant; the contact, at ``height`` (m,), is linear about ``at``

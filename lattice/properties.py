@@ -50,8 +50,14 @@ def beam_strength(load: float, length: float, width: float, h: float) -> float:
     return 6.0 * load * length / (width * h**2)
 
 
-def ice_from_field(field: FieldMeasurement, compressive_ratio: float = 5.0, nu: float = 1.0 / 3.0, rho_i: float = 920.0,
-                   rho_w: float = 1025.0, cells: int = 4) -> Ice:
+def ice_from_field(
+    field: FieldMeasurement,
+    compressive_ratio: float = 5.0,
+    nu: float = 1.0 / 3.0,
+    rho_i: float = 920.0,
+    rho_w: float = 1025.0,
+    cells: int = 4,
+) -> Ice:
     """Elastic sheet with its strengths from a field measurement, in one call.
 
     sigma_f is the beam stress (4.27), sigma_t the same (section 6.1) and sigma_c = ``compressive_ratio`` sigma_f
@@ -61,8 +67,16 @@ def ice_from_field(field: FieldMeasurement, compressive_ratio: float = 5.0, nu: 
     """
     E = youngs_modulus(brine_volume(field.salinity, field.temperature)) if field.E is None else field.E
     sigma_f = beam_strength(field.failure_load, field.beam_length, field.beam_width, field.thickness)
-    ice = Ice(E=E, nu=nu, h=field.thickness, rho_i=rho_i, rho_w=rho_w, sigma_t=sigma_f, sigma_f=sigma_f,
-              sigma_c=compressive_ratio * sigma_f)
+    ice = Ice(
+        E=E,
+        nu=nu,
+        h=field.thickness,
+        rho_i=rho_i,
+        rho_w=rho_w,
+        sigma_t=sigma_f,
+        sigma_f=sigma_f,
+        sigma_c=compressive_ratio * sigma_f,
+    )
     if field.stress_relief:
         return ice
     f = factor_f(ice, field.beam_length, field.beam_width, cells, compressive_ratio)

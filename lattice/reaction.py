@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from lattice.compiled import compiled
 from lattice.engine import GAMMA, Engine, State, Step
 from lattice.grid import Array, IntArray
 from lattice.springs import spring_force
@@ -63,8 +63,7 @@ class Support:
         return float(force_x.sum()), float(force_z.sum()), float(force_x[self.held[nodes]].sum())
 
     def force(self, mean: Mean, a: State, b: State, dt: float, live: np.ndarray) -> float:
-        """Mean force along x on the sheet, which goes from a to b in ``dt`` [s], with elastic and material damping [N].
-        """
+        """Mean force along x on the sheet, from a to b in ``dt`` [s], with elastic and material damping [N]."""
         if not len(self._reacts):
             return 0.0
         n, e = self._around, self.engine
@@ -76,7 +75,7 @@ class Support:
         return float(spring_force(self._dof, *e.sparse_u, live[self._cells], x.ravel())[2 * self._reacts].sum())
 
 
-@njit(cache=True)
+@compiled()
 def _sums(mean_a, mean_b, mean_va, mean_vb, weights, q_0, q_1, v_0, v_1, u_0, u_1, k_f, C_q, M_q, M_u, present):
     """Sums over the nodes that are present: k_f w, C times the way of w, mass times the gain of velocity in z and x.
 
@@ -94,13 +93,36 @@ def _sums(mean_a, mean_b, mean_va, mean_vb, weights, q_0, q_1, v_0, v_1, u_0, u_
     return lift, brake, up, ahead
 
 
-def between(support: Support, a: State, b: State, dt: float, mean: Mean, live: np.ndarray, present: np.ndarray,
-            applied: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Reaction:
-    """Means over a time ``dt`` [s] in which the nodes that are ``present`` go from a to b; ``applied`` as in `Support`.
-    """
+def between(
+    support: Support,
+    a: State,
+    b: State,
+    dt: float,
+    mean: Mean,
+    live: np.ndarray,
+    present: np.ndarray,
+    applied: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Reaction:
+    """Means over a time ``dt`` [s] in which ``present`` nodes go from a to b; ``applied`` as in `Support`."""
     e, weights = support.engine, (mean.weight_a, mean.weight_b, mean.slope)
-    lift, brake, up, ahead = _sums(mean.a.q, mean.b.q, mean.a.q_dot, mean.b.q_dot, weights, a.q, b.q, a.q_dot, b.q_dot,
-                                   a.u_dot, b.u_dot, e.k_f, e.C_q, e.M_q, e.M_u, present)
+    lift, brake, up, ahead = _sums(
+        mean.a.q,
+        mean.b.q,
+        mean.a.q_dot,
+        mean.b.q_dot,
+        weights,
+        a.q,
+        b.q,
+        a.q_dot,
+        b.q_dot,
+        a.u_dot,
+        b.u_dot,
+        e.k_f,
+        e.C_q,
+        e.M_q,
+        e.M_u,
+        present,
+    )
     held = support.force(mean, a, b, dt, live)
     return Reaction((0.0, -lift), (0.0, -brake / dt), (-ahead / dt, -up / dt), (held - applied[2], 0.0), applied[:2])
 

@@ -67,8 +67,19 @@ class Sheet:
 
     _written: tuple[str, ...] = ("intact", "present", "energy", "_long")  #: see `memory.remember`
 
-    def __init__(self, grid: Grid, ice: Ice, springs: Springs, dt: float, *, held: np.ndarray, damping: float = 0.0,
-                 alpha: float = 0.0, share: float = 0.2, long_step: int = 1):
+    def __init__(
+        self,
+        grid: Grid,
+        ice: Ice,
+        springs: Springs,
+        dt: float,
+        *,
+        held: np.ndarray,
+        damping: float = 0.0,
+        alpha: float = 0.0,
+        share: float = 0.2,
+        long_step: int = 1,
+    ):
         """``held``, ``damping``, ``alpha`` as in `Engine`; a piece with a held node is not loose.
 
         A free piece with less than ``share`` of the floe's area leaves the lattice (see `fragments.loose_pieces`).
@@ -104,6 +115,7 @@ class Sheet:
             self._drop_long_step()
             self._longest = max(1, round(self._longest_time / dt))
             self.dt, self._windows = dt, min(2, self._longest)
+
     def rest_under(self, force_u: Array, force_q: Array) -> None:
         """Puts the unbroken sheet into equilibrium with forces (n, 2), (n, 3); StepError if they break it."""
         self.state = self.engine.equilibrium(force_u, force_q)
@@ -114,15 +126,19 @@ class Sheet:
 
     def answer(self, nodes: IntArray) -> tuple[Array, Array]:
         """Displacements (k, 2) [m/N] and velocities (k, 2) [m/(N s)] of nodes in x and z, at the end of a window in
-        which one newton has pressed on each of them, in x and in z."""
+        which one newton has pressed on each of them, in x and in z.
+        """
         force_u, force_q = np.zeros((self.grid.nodes, 2)), np.zeros((self.grid.nodes, 3))
         force_u[nodes, 0] = force_q[nodes, 0] = 1.0
         s = self.engine.step(0.0, self.dt, State.rest(self.grid.nodes), force_u, force_q, NoContact()).state
-        return (np.column_stack((s.u[nodes, 0], s.q[nodes, 0])),
-                np.column_stack((s.u_dot[nodes, 0], s.q_dot[nodes, 0])))
+        return (
+            np.column_stack((s.u[nodes, 0], s.q[nodes, 0])),
+            np.column_stack((s.u_dot[nodes, 0], s.q_dot[nodes, 0])),
+        )
 
-    def advance(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
-                release: Callable[[IntArray], None]) -> Outcome:
+    def advance(
+        self, t: float, force_u: Array, force_q: Array, contact: EdgeContact, release: Callable[[IntArray], None]
+    ) -> Outcome:
         """One window from time t under constant external forces (n, 2), (n, 3).
 
         A piece that comes loose leaves at once with its state at the start of the window: ``release`` is called with
@@ -191,8 +207,9 @@ class Sheet:
 
     # ---- one window -------------------------------------------------------------------------------------------
 
-    def _solve_window(self, t: float, force_u: Array, force_q: Array, contact: EdgeContact,
-                      release: Callable[[IntArray], None]) -> Outcome:
+    def _solve_window(
+        self, t: float, force_u: Array, force_q: Array, contact: EdgeContact, release: Callable[[IntArray], None]
+    ) -> Outcome:
         out = Outcome(np.empty((0, 3)), np.empty((0, 3)))
         if self._rotation().max() > TURNED:
             self._tear_off(t, contact, out, release)
@@ -211,8 +228,9 @@ class Sheet:
             force_u[~self.present], force_q[~self.present] = 0.0, 0.0
         self.energy.book_step(step, force_u, force_q, contact.nodes, self.live_cells, self.present)
         applied = self.support.applied(slice(None), force_u[:, 0], force_q[:, 0])
-        out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), self.live_cells,
-                               self.present, applied)
+        out.reaction = between(
+            self.support, self.state, step.state, self.dt, of_step(step), self.live_cells, self.present, applied
+        )
         self.state, self.utilisation = step.state, utilisation
         if out.failed:
             self._wait, self._windows = QUIET, min(2, self._longest)
@@ -251,8 +269,9 @@ class Sheet:
         self.intact[cell] = False
         self.engine.remove(np.array([cell]))
 
-    def _release_loose(self, out: Outcome, release: Callable[[IntArray], None],
-                       turned: np.ndarray | None = None) -> None:
+    def _release_loose(
+        self, out: Outcome, release: Callable[[IntArray], None], turned: np.ndarray | None = None
+    ) -> None:
         pieces, self.parts = loose_pieces(self.grid, self.intact, self.present, self.held, self.share, turned)
         for piece in pieces:
             live = self.live_cells

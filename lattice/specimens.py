@@ -28,8 +28,10 @@ class EdgeCrack:
 
     def __post_init__(self) -> None:
         if not 1 <= self.cut < self.cells:
-            raise ValueError(f"a crack of {self.cut} cells ({self.cut * self.L / self.cells:g} m) does not end inside "
-                             f"the plate of {self.cells} cells ({self.L:g} m): use 1 to {self.cells - 1} cells")
+            raise ValueError(
+                f"a crack of {self.cut} cells ({self.cut * self.L / self.cells:g} m) does not end inside "
+                f"the plate of {self.cells} cells ({self.L:g} m): use 1 to {self.cells - 1} cells"
+            )
 
     @property
     def grid(self) -> Grid:
@@ -40,7 +42,7 @@ class EdgeCrack:
         return self.cells // 2
 
     def displacement(self) -> Array:
-        """u per newton at the crack mouth, (nodes, 2) [m/N]."""
+        """U per newton at the crack mouth, (nodes, 2) [m/N]."""
         grid, n, row = self.grid, self.cells, self.row
         intact = np.ones((n, n), dtype=bool)
         intact[: self.cut, row] = False

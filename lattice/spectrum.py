@@ -17,8 +17,11 @@ from lattice.statics import held_out_of_plane, ice_area
 from lattice.stiffness import Springs
 
 #: options of SuperLU for a symmetric pattern: a third less fill than the default
-SYMMETRIC: dict[str, Any] = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.01,
-                             "options": {"SymmetricMode": True}}
+SYMMETRIC: dict[str, Any] = {
+    "permc_spec": "MMD_AT_PLUS_A",
+    "diag_pivot_thresh": 0.01,
+    "options": {"SymmetricMode": True},
+}
 
 
 @dataclass(frozen=True)

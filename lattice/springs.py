@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from lattice.compiled import compiled
 from lattice.grid import Array, IntArray
 
 TOUCHED = 4  #: dof of a cell with which one spring is connected, at most
@@ -19,7 +19,7 @@ def sparse_rows(rows: Array) -> tuple[IntArray, Array]:
     return place, value
 
 
-@njit(cache=True, inline="always")
+@compiled(inline="always")
 def elongation(dof, place, value, x, c, k):
     """Elongation of spring k of cell c, times the root of its stiffness."""
     e = 0.0
@@ -28,7 +28,7 @@ def elongation(dof, place, value, x, c, k):
     return e
 
 
-@njit(cache=True)
+@compiled()
 def spring_energy(dof, place, value, live, x):
     """Sum over live cells of half the square of each spring's elongation [J]; ``x`` (n,)."""
     total = 0.0
@@ -40,7 +40,7 @@ def spring_energy(dof, place, value, live, x):
     return 0.5 * total
 
 
-@njit(cache=True)
+@compiled()
 def spring_force(dof, place, value, live, x):
     """K x of the springs of live cells, (n,) [N], [N m]."""
     out = np.zeros_like(x)
@@ -53,7 +53,7 @@ def spring_force(dof, place, value, live, x):
     return out
 
 
-@njit(cache=True)
+@compiled()
 def pull_on(dof, place, value, cells, live, chosen, x):
     """Sum of K x over the ``chosen`` dof (n,), of the springs of those ``cells`` that are live [N]."""
     total = 0.0

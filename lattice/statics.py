@@ -66,8 +66,9 @@ def ice_area(grid: Grid, intact: np.ndarray | None = None) -> Array:
     return corners * (grid.d**2 / 4.0)
 
 
-def out_of_plane_stiffness(grid: Grid, ice: Ice, springs: Springs, intact: np.ndarray | None = None,
-                           k_f: float | None = None) -> sp.csc_matrix:
+def out_of_plane_stiffness(
+    grid: Grid, ice: Ice, springs: Springs, intact: np.ndarray | None = None, k_f: float | None = None
+) -> sp.csc_matrix:
     """Springs of (2.2), (2.10), (2.12) plus the Kelvin foundation rho_w g under the intact ice (2.3.2), (3n, 3n)."""
     K = assemble(grid, out_of_plane_springs(springs, grid.d), intact)
     buoyancy = np.zeros(3 * grid.nodes)

@@ -16,13 +16,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
-from numba import njit
 from scipy.sparse.linalg import eigsh
 
+from lattice.compiled import compiled
 from lattice.grid import Array
 
 
-@njit(cache=True)
+@compiled()
 def advance(indptr, indices, K, C, m, q, v, F, dF, dt, steps):
     """``steps`` leapfrog steps of q, v (n,) in place; the load grows by dF per second; K and C share the pattern."""
     force = np.empty_like(q)
@@ -79,8 +79,10 @@ class Stepper:
         """New matrices, for example after a cell broke; q and v go on as they are."""
         limit = critical_step(K, C, self.m)
         if not 0.0 < self.dt <= limit:
-            raise ValueError(f"time step {self.dt:.3g} s is not stable: use at most {limit:.3g} s "
-                             "(largest frequency of the lattice, damping included)")
+            raise ValueError(
+                f"time step {self.dt:.3g} s is not stable: use at most {limit:.3g} s "
+                "(largest frequency of the lattice, damping included)"
+            )
         self.K, self.C = K.tocsr(), C.tocsr()
         self._merge(self.K, self.C)
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import cfunc, njit
 
+from rubble.compiled import callback, compiled
 from rubble.geometry import Array
 from rubble.pointers import IntArray, integer, number, offsets, real, set_integer
 
@@ -22,7 +22,7 @@ from rubble.pointers import IntArray, integer, number, offsets, real, set_intege
 CONTACT_COLUMNS = 9
 
 
-@cfunc("void(voidptr, voidptr, voidptr)", cache=True)
+@callback("void(voidptr, voidptr, voidptr)")
 def note_pair(arbiter: Any, space: Any, data: Any) -> None:
     """Post-solve callback: append the address of an arbiter; data: its first entry is the address of the header."""
     header = integer(number(data))
@@ -32,7 +32,7 @@ def note_pair(arbiter: Any, space: Any, data: Any) -> None:
         set_integer(integer(header + 16) + 8 * count, number(arbiter))
 
 
-@njit("void(int64, int64, int64[::1], bool_, float64[::1])", cache=True, nogil=True)
+@compiled("void(int64, int64, int64[::1], bool_, float64[::1])", nogil=True)
 def read_contact(arbiter: int, contact: int, layout: IntArray, turn: bool, v: Array) -> None:
     """One contact of an arbiter as a row, see CONTACT_COLUMNS; ``turn``: as seen from the other body."""
     a, b, sign = (layout[8], layout[7], -1.0) if turn else (layout[7], layout[8], 1.0)

@@ -80,9 +80,20 @@ class Block:
         return place(self.prism.polygon, *self.body.position, self.body.angle, 0.0, 0.0)
 
 
-def make_block(number: int, physics: RubblePhysics, polygon: Array, cuts: Array, widths: Array, density: float,
-               velocity: tuple[float, float], omega: float, y: float, fragment: int, angle: float,
-               flooded: float = 1.0) -> Block:
+def make_block(
+    number: int,
+    physics: RubblePhysics,
+    polygon: Array,
+    cuts: Array,
+    widths: Array,
+    density: float,
+    velocity: tuple[float, float],
+    omega: float,
+    y: float,
+    fragment: int,
+    angle: float,
+    flooded: float = 1.0,
+) -> Block:
     """A block from its outline in world coordinates; ``cuts`` (s + 1,) are places along the axis at ``angle`` [m]."""
     prism, (cx, cz) = make_prism(place(_checked(polygon), 0.0, 0.0, -angle, 0.0, 0.0), cuts, widths, density)
     body = pymunk.Body(1.0, 1.0)
@@ -103,8 +114,20 @@ def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[
     parts, own, area = [p - shift for p in parts], own - shift, float(moments(own)[0])
     edges = wetted_edges(parts, cuts - cx, widths)
     axis, slender = _long_axis(own)
-    prism = Prism(own, edges, density * volume, density * polar, volume / area, area,
-                  float(np.hypot(*own.T).max()), axis, slender, parts, cuts - cx, widths)
+    prism = Prism(
+        own,
+        edges,
+        density * volume,
+        density * polar,
+        volume / area,
+        area,
+        float(np.hypot(*own.T).max()),
+        axis,
+        slender,
+        parts,
+        cuts - cx,
+        widths,
+    )
     return prism, (cx, cz)
 
 
@@ -156,10 +179,12 @@ def _checked_strips(polygon: Array, cuts: Array, widths: Array) -> tuple[Array, 
     lo, hi = polygon[:, 0].min(), polygon[:, 0].max()
     keep = (cuts[1:] > lo) & (cuts[:-1] < hi)
     if not keep.any():
-        raise ValueError(f"strips from {cuts[0]:g} to {cuts[-1]:g} m miss the block from {lo:g} to {hi:g} m; "
-                         "cuts are places along the block's axis")
+        raise ValueError(
+            f"strips from {cuts[0]:g} to {cuts[-1]:g} m miss the block from {lo:g} to {hi:g} m; "
+            "cuts are places along the block's axis"
+        )
     first, last = int(np.argmax(keep)), len(keep) - int(np.argmax(keep[::-1]))
-    cuts, widths = cuts[first:last + 1].copy(), widths[first:last].copy()
+    cuts, widths = cuts[first : last + 1].copy(), widths[first:last].copy()
     cuts[0], cuts[-1] = lo, hi
     return cuts, widths
 

@@ -6,9 +6,9 @@ They are formed in the order in which the solver goes through the contacts, see 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from rubble.arbiters import read_contact
+from rubble.compiled import compiled
 from rubble.friction import STRUCTURE_SLOT, UNKNOWN, shares, slot_of, tilt
 from rubble.geometry import Array
 from rubble.pointers import IntArray, integer, real, short
@@ -21,7 +21,7 @@ SUM_COLUMNS = 7
 HEAVY_COLUMNS = 7
 
 
-@njit("void(float64[::1], float64[::1], float64[::1], float64[::1], float64, float64)", cache=True, nogil=True)
+@compiled("void(float64[::1], float64[::1], float64[::1], float64[::1], float64, float64)", nogil=True)
 def _on_structure(v: Array, law: Array, state: Array, block: Array, y: float, v_y: float) -> None:
     """A block's contact with the structure, whose body stands at the origin: v[0], v[1] is the point in the section."""
     block[0] -= v[4]
@@ -37,7 +37,7 @@ def _on_structure(v: Array, law: Array, state: Array, block: Array, y: float, v_
     block[4] += mu * push * more / p
 
 
-@njit("void(float64[::1], float64[::1], float64[:, ::1])", cache=True, nogil=True)
+@compiled("void(float64[::1], float64[::1], float64[:, ::1])", nogil=True)
 def _on_sheet(v: Array, sheet: Array, nodes: Array) -> None:
     """Share out a contact with the sheet to the two nodes next to it; force and moment are kept.
 
@@ -66,7 +66,7 @@ def _on_sheet(v: Array, sheet: Array, nodes: Array) -> None:
     nodes[k + 1, 3] += (1.0 - w) * jz - jx * lever / span
 
 
-@njit("void(int64[::1], float64[::1], float64[::1], float64[::1], float64[:, ::1])", cache=True, nogil=True)
+@compiled("void(int64[::1], float64[::1], float64[::1], float64[::1], float64[:, ::1])", nogil=True)
 def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: Array) -> None:
     """Keep a pair whose normal impulse exceeds strength times contact length times width in a sub-step.
 
@@ -96,11 +96,26 @@ def _note_heavy(pair: IntArray, first: Array, last: Array, limit: Array, heavy: 
     heavy[k, 6] += jn * length
 
 
-@njit("int64(int64[::1], int64[::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], float64[::1], "
-      "float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])",
-      cache=True, nogil=True)
-def accumulate(header: IntArray, pairs: IntArray, layout: IntArray, addresses: IntArray, slots: IntArray, state: Array,
-               law: Array, side: Array, limit: Array, sheet: Array, sums: Array, nodes: Array, heavy: Array) -> int:
+@compiled(
+    "int64(int64[::1], int64[::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], float64[::1], "
+    "float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1])",
+    nogil=True,
+)
+def accumulate(
+    header: IntArray,
+    pairs: IntArray,
+    layout: IntArray,
+    addresses: IntArray,
+    slots: IntArray,
+    state: Array,
+    law: Array,
+    side: Array,
+    limit: Array,
+    sheet: Array,
+    sums: Array,
+    nodes: Array,
+    heavy: Array,
+) -> int:
     """Add the contacts of one sub-step; ``addresses`` and ``slots`` (`friction.slot_table`) tell bodies apart.
 
     ``header``, ``pairs`` and ``layout`` are those of `arbiters.ContactReader`; ``sums`` (blocks, 7) see SUM_COLUMNS;

@@ -11,9 +11,9 @@ force is capped.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from rubble.block import Block, cut_block
+from rubble.compiled import compiled
 from rubble.geometry import Array
 from rubble.section import Section
 from rubble.stock import energy_of
@@ -21,17 +21,20 @@ from rubble.stock import energy_of
 
 def crush(section: Section, window: float) -> tuple[float, Array, float]:
     """Cut the overloaded blocks of a section after a window [s]; returns crushed mass [kg], its momentum (3,) and its
-    energy [J]."""
+    energy [J].
+    """
     physics, mass, momentum, energy = section.physics, 0.0, np.zeros(3), 0.0
-    for row in section.heavy[1:1 + int(section.heavy[0, 0])]:
+    for row in section.heavy[1 : 1 + int(section.heavy[0, 0])]:
         needed = float(row[3]) / window / physics.contact_strength  # contact area [m2]
         along = float(np.hypot(row[4], row[5]))
         if along == 0.0:
             continue  # pressed from opposite sides alike: no side to cut back
-        ends = [(section.blocks[int(row[k])], sign * row[4:6] / along)
-                for k, sign in ((0, 1.0), (1, -1.0)) if row[k] >= 0]
-        lacking, depth, block, normal = max(((*depth_for(b, n, needed, float(row[3]), window), b, n) for b, n in ends),
-                                            key=lambda found: found[0])
+        ends = [
+            (section.blocks[int(row[k])], sign * row[4:6] / along) for k, sign in ((0, 1.0), (1, -1.0)) if row[k] >= 0
+        ]
+        lacking, depth, block, normal = max(
+            ((*depth_for(b, n, needed, float(row[3]), window), b, n) for b, n in ends), key=lambda found: found[0]
+        )
         if lacking > physics.slop:
             before = np.array([block.body.velocity.x, block.v_y, block.body.velocity.y])
             had = sum(energy_of(block, physics))
@@ -43,7 +46,7 @@ def crush(section: Section, window: float) -> tuple[float, Array, float]:
     return mass, momentum, energy
 
 
-@njit("float64(float64[:, ::1], float64, float64, float64)", cache=True, nogil=True)
+@compiled("float64(float64[:, ::1], float64, float64, float64)", nogil=True)
 def _chord(polygon: Array, nx: float, nz: float, at: float) -> float:
     """Length of a convex polygon's cut by the line ``n . x = at``; along an edge its length."""
     low, high, k = np.inf, -np.inf, polygon.shape[0]
@@ -63,7 +66,8 @@ def _chord(polygon: Array, nx: float, nz: float, at: float) -> float:
 
 def depth_for(block: Block, normal: Array, needed: float, impulse: float, window: float) -> tuple[float, float]:
     """How far a block must be cut back along the outward ``normal`` (2,) for a contact of ``needed`` area, and how far
-    it recedes in this window [m]; the first is infinite if no section of the block is wide enough."""
+    it recedes in this window [m]; the first is infinite if no section of the block is wide enough.
+    """
     c, s = np.cos(block.body.angle), np.sin(block.body.angle)
     nx, nz = float(c * normal[0] + s * normal[1]), float(-s * normal[0] + c * normal[1])
     chord = needed / block.prism.width
@@ -72,10 +76,11 @@ def depth_for(block: Block, normal: Array, needed: float, impulse: float, window
     return lacking, min(lacking, float(pace))
 
 
-@njit("UniTuple(float64, 2)(float64[:, ::1], float64, float64, float64)", cache=True, nogil=True)
+@compiled("UniTuple(float64, 2)(float64[:, ::1], float64, float64, float64)", nogil=True)
 def _cut_depth(polygon: Array, nx: float, nz: float, chord: float) -> tuple[float, float]:
     """Depth below the farthest corner along n at which a convex polygon is ``chord`` wide (inf: nowhere), and its width
-    at that corner."""
+    at that corner.
+    """
     reach = np.sort(polygon[:, 0] * nx + polygon[:, 1] * nz)[::-1]
     there = _chord(polygon, nx, nz, reach[0])
     near, narrow = reach[0], there

@@ -17,10 +17,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc, njit
+from numba import carray
 from pymunk._chipmunk_cffi import ffi, lib
 
 from rubble.arbiters import ContactReader, note_pair
+from rubble.compiled import callback, compiled
 from rubble.geometry import Array
 from rubble.physics import RATE_DEPENDENT, RubblePhysics
 from rubble.pointers import OFFSETS, IntArray, integer, number, offsets, pointer, real, set_real
@@ -36,13 +37,13 @@ LAW = 3
 _FIXED = 10
 
 
-@njit("float64(float64)", cache=True, nogil=True)
+@compiled("float64(float64)", nogil=True)
 def rate_dependent(v: float) -> float:
-    """mu = 0.7 - 0.15 log10(v / 1e-6 m/s), between 1e-6 and 1e-2 m/s (Lishman and Polojarvi 2015)."""
+    """Mu = 0.7 - 0.15 log10(v / 1e-6 m/s), between 1e-6 and 1e-2 m/s (Lishman and Polojarvi 2015)."""
     return 0.7 - 0.15 * np.log10(min(max(abs(v), 1e-6), 1e-2) / 1e-6)
 
 
-@njit("int64(int64, int64[::1], int64[::1])", cache=True, nogil=True, inline="always")
+@compiled("int64(int64, int64[::1], int64[::1])", nogil=True, inline="always")
 def slot_of(body: int, bodies: IntArray, slots: IntArray) -> int:
     """Slot of a body by its address, in the tables of `slot_table`."""
     mask = bodies.shape[0] - 1
@@ -66,7 +67,7 @@ def slot_table(bodies: list[int], slots: list[int]) -> tuple[IntArray, IntArray]
     return keys, values
 
 
-@njit("UniTuple(float64, 2)(float64, float64, float64, float64, float64)", cache=True, nogil=True)
+@compiled("UniTuple(float64, 2)(float64, float64, float64, float64, float64)", nogil=True)
 def tilt(x: float, n_x: float, y_section: float, revolved: float, y: float) -> tuple[float, float]:
     """(p, n_y) of the face of a body of revolution at x in a section, for a block that stands at y.
 
@@ -81,7 +82,7 @@ def tilt(x: float, n_x: float, y_section: float, revolved: float, y: float) -> t
     return p, q * p
 
 
-@njit("UniTuple(float64, 3)(float64[::1], float64, float64, float64, float64)", cache=True, nogil=True)
+@compiled("UniTuple(float64, 3)(float64[::1], float64, float64, float64, float64)", nogil=True)
 def shares(law: Array, p: float, n_y: float, v_s: float, v_y: float) -> tuple[float, float, float]:
     """(mu, N / N_plane, share of the friction that acts across) of a contact with the structure."""
     s = v_y / p
@@ -91,14 +92,14 @@ def shares(law: Array, p: float, n_y: float, v_s: float, v_y: float) -> tuple[fl
     return mu, 1.0 / max(p + mu * n_y * across, 1e-3), across
 
 
-@cfunc("void(voidptr, voidptr, voidptr)", cache=True)
+@callback("void(voidptr, voidptr, voidptr)")
 def _set_constant(arbiter: Any, space: Any, header: Any) -> None:
     """Pre-solve callback: a coefficient that does not depend on the motion, into the arbiter."""
     h = number(header)
     set_real(number(arbiter) + integer(h + 8 * 16), real(integer(h + 8)))
 
 
-@cfunc("void(voidptr, voidptr, voidptr)", cache=True)
+@callback("void(voidptr, voidptr, voidptr)")
 def _set_friction(arbiter: Any, space: Any, header: Any) -> None:
     """Pre-solve callback: friction of the pair into the arbiter."""
     h = carray(header, 22, np.int64)
@@ -153,5 +154,13 @@ class PairFriction:
     def watch(self, bodies: IntArray, slots: IntArray, state: Array, sheet_row: int, side: Array) -> None:
         """Where the callback finds the motion of the bodies; ``side`` (2, blocks) y and v_y. The caller keeps them."""
         for header in self._headers:
-            header[2:_FIXED] = (len(bodies), bodies.ctypes.data, slots.ctypes.data, len(state), state.ctypes.data,
-                                sheet_row, side[0].ctypes.data, side[1].ctypes.data)
+            header[2:_FIXED] = (
+                len(bodies),
+                bodies.ctypes.data,
+                slots.ctypes.data,
+                len(state),
+                state.ctypes.data,
+                sheet_row,
+                side[0].ctypes.data,
+                side[1].ctypes.data,
+            )

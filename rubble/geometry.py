@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from rubble.compiled import compiled
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -19,7 +20,7 @@ POINT = "float64[::1]"
 POLYGON = "float64[:, ::1]"
 
 
-@njit(f"float64[::1]({POLYGON})", cache=True, nogil=True)
+@compiled(f"float64[::1]({POLYGON})", nogil=True)
 def moments(polygon: Array) -> Array:
     """Area, centroid x, centroid z and polar second moment of area about the centroid of a (k, 2) polygon.
 
@@ -43,7 +44,7 @@ def moments(polygon: Array) -> Array:
     return out
 
 
-@njit(f"{POLYGON}({POLYGON}, float64, float64, float64)", cache=True, nogil=True)
+@compiled(f"{POLYGON}({POLYGON}, float64, float64, float64)", nogil=True)
 def clip(polygon: Array, nx: float, nz: float, c: float) -> Array:
     """The part of a convex (k, 2) polygon on which ``nx x + nz z <= c``; (m, 2), m = 0 if nothing is left."""
     k = polygon.shape[0]
@@ -63,13 +64,13 @@ def clip(polygon: Array, nx: float, nz: float, c: float) -> Array:
     return out[:m].copy()
 
 
-@njit(f"{POLYGON}({POLYGON})", cache=True, nogil=True)
+@compiled(f"{POLYGON}({POLYGON})", nogil=True)
 def submerged(polygon: Array) -> Array:
     """The part of a convex polygon below still water, z <= 0."""
     return clip(polygon, 0.0, 1.0, 0.0)
 
 
-@njit(f"{POLYGON}({POLYGON}, {POLYGON})", cache=True, nogil=True)
+@compiled(f"{POLYGON}({POLYGON}, {POLYGON})", nogil=True)
 def intersection(polygon: Array, convex: Array) -> Array:
     """Common part of two convex counter-clockwise polygons; (0, 2) if they do not meet."""
     out = polygon.copy()
@@ -81,7 +82,7 @@ def intersection(polygon: Array, convex: Array) -> Array:
     return out
 
 
-@njit(f"{POLYGON}({POLYGON}, float64, float64, float64, float64, float64)", cache=True, nogil=True)
+@compiled(f"{POLYGON}({POLYGON}, float64, float64, float64, float64, float64)", nogil=True)
 def place(polygon: Array, x: float, z: float, angle: float, dx: float, dz: float) -> Array:
     """A body-frame polygon, first shifted by (dx, dz), turned by ``angle`` [rad] and moved to (x, z)."""
     c, s = np.cos(angle), np.sin(angle)
@@ -92,7 +93,7 @@ def place(polygon: Array, x: float, z: float, angle: float, dx: float, dz: float
     return out
 
 
-@njit(f"{POLYGON}({POLYGON}, {POLYGON})", cache=True, nogil=True)
+@compiled(f"{POLYGON}({POLYGON}, {POLYGON})", nogil=True)
 def nearest_edges(edges: Array, points: Array) -> Array:
     """Angle [rad] and distance [m] (n, 2) of the edge (x0, z0, x1, z1) of (e, 4) nearest to each point (n, >= 2)."""
     out = np.full((points.shape[0], 2), np.inf)
@@ -108,7 +109,7 @@ def nearest_edges(edges: Array, points: Array) -> Array:
     return out
 
 
-@njit(f"{POLYGON}({POLYGON}, int64[::1], {POLYGON})", cache=True, nogil=True)
+@compiled(f"{POLYGON}({POLYGON}, int64[::1], {POLYGON})", nogil=True)
 def place_all(polygons: Array, offset: IntArray, state: Array) -> Array:
     """Body-frame polygons (v, 2), block i from offset[i] to offset[i + 1], at the poses (n, >= 3) x, z, angle."""
     out = np.empty_like(polygons)

@@ -34,8 +34,16 @@ class Pile:
     force: float  #: upward on sheet and structure, mean of the last window [N]
 
 
-def settle(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], volume: float, seed: int, *,
-           lengths: tuple[float, float] = (0.5, 1.5), longest: float = 300.0, window: float = 0.5) -> Pile:
+def settle(
+    layer: RubbleLayer,
+    fronts: Mapping[int, tuple[float, float]],
+    volume: float,
+    seed: int,
+    *,
+    lengths: tuple[float, float] = (0.5, 1.5),
+    longest: float = 300.0,
+    window: float = 0.5,
+) -> Pile:
     """Fill the sections with ``volume`` [m^3] in equal shares and let it come to rest; ``layer`` has its sheet already.
 
     ``fronts`` holds for each section x of the structure's face at the sheet's underside and z of that underside [m];
@@ -49,8 +57,9 @@ def settle(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], volume
     return rest(layer, fronts, longest=longest, window=window)
 
 
-def rest(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], *, longest: float = 300.0,
-         window: float = 0.5) -> Pile:
+def rest(
+    layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], *, longest: float = 300.0, window: float = 0.5
+) -> Pile:
     """Let the blocks come to rest under the sheet as it is now; arguments as in `settle`."""
     domain, layer.domain, layer.hold_across = layer.domain, Domain(), True
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
@@ -61,13 +70,22 @@ def rest(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], *, longe
     time, layer.time, layer.hold_across, layer.domain = layer.time, 0.0, False, domain
     layer.set_form_drag(layer.physics.form_drag)
     if calm > CALM:
-        raise RuntimeError(f"initial rubble has not settled after {longest:g} s: kinetic over potential energy is "
-                           f"{calm:.2g}; give another seed or more friction")
+        raise RuntimeError(
+            f"initial rubble has not settled after {longest:g} s: kinetic over potential energy is "
+            f"{calm:.2g}; give another seed or more friction"
+        )
     return measure(layer, fronts, time, calm)
 
 
-def _fill(layer: RubbleLayer, key: int, x_face: float, z_top: float, volume: float, random: np.random.Generator,
-          lengths: tuple[float, float]) -> None:
+def _fill(
+    layer: RubbleLayer,
+    key: int,
+    x_face: float,
+    z_top: float,
+    volume: float,
+    random: np.random.Generator,
+    lengths: tuple[float, float],
+) -> None:
     """Blocks of one section, one below the other: they rise and arrive in turn, as if poured."""
     h, width = layer.physics.thickness, layer.pitch
     area = volume / width
@@ -81,9 +99,19 @@ def _fill(layer: RubbleLayer, key: int, x_face: float, z_top: float, volume: flo
         angle = float(random.uniform(-0.5, 0.5) * np.pi)
         box = np.array([(-size, -h), (size, -h), (size, h), (-size, h)]) / 2.0
         middle = x * np.cos(angle) + z * np.sin(angle)
-        layer.add_block(key, place(box, x, z, angle, 0.0, 0.0), middle + np.array([-size, size]) / 2.0,
-                        np.array([width]), layer.physics.rho_i, (0.0, 0.0), 0.0, layer.centre(key), -1, angle,
-                        flooded=True)
+        layer.add_block(
+            key,
+            place(box, x, z, angle, 0.0, 0.0),
+            middle + np.array([-size, size]) / 2.0,
+            np.array([width]),
+            layer.physics.rho_i,
+            (0.0, 0.0),
+            0.0,
+            layer.centre(key),
+            -1,
+            angle,
+            flooded=True,
+        )
 
 
 def _calm(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]]) -> float:
@@ -93,8 +121,9 @@ def _calm(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]]) -> floa
     return (energy["kinetic"] + energy["added"]) / max(lift * float(t.mass @ np.abs(t.position[:, 2] - top)), 1.0)
 
 
-def measure(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], time: float = 0.0,
-            calm: float = 0.0) -> Pile:
+def measure(
+    layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], time: float = 0.0, calm: float = 0.0
+) -> Pile:
     """Porosity, slope and upward force of the pile as it lies."""
     ice = pores = 0.0
     slopes, depths = [], []
@@ -106,8 +135,17 @@ def measure(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], time:
             depths.append(found[3])
     on_sheet = sum(float(layer.sheet_forces(key)[:, 1].sum()) for key in layer.sections)
     lift = float(layer.load_on_structure[:, 2].sum()) + on_sheet
-    return Pile(len(layer.blocks), layer.mass / layer.physics.rho_i, layer.mass, pores / (ice + pores),
-                float(np.mean(slopes)), float(max(depths)), time, calm, lift)
+    return Pile(
+        len(layer.blocks),
+        layer.mass / layer.physics.rho_i,
+        layer.mass,
+        pores / (ice + pores),
+        float(np.mean(slopes)),
+        float(max(depths)),
+        time,
+        calm,
+        lift,
+    )
 
 
 def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tuple[float, float, float, float] | None:
@@ -125,7 +163,7 @@ def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tup
     low = np.where(covered.any(axis=1), z[np.argmax(covered, axis=1)], np.nan)
     pores = ~covered & ~solid & (gz >= low[:, None])
     deepest = int(np.nanargmin(low))
-    flank, rear = low[:deepest + 1], x[:deepest + 1]
+    flank, rear = low[: deepest + 1], x[: deepest + 1]
     on = np.isfinite(flank)
     slope = -np.polyfit(rear[on], flank[on], 1)[0] if on.sum() > 1 else 0.0
     return float(covered.sum()) * step**2, float(pores.sum()) * step**2, float(np.arctan(slope)), top - low[deepest]

@@ -11,9 +11,9 @@ So the push ends at ``v_y = V n_p / n_y`` with V the speed of the feed: beyond, 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from rubble.block import Block
+from rubble.compiled import compiled
 from rubble.geometry import Array, IntArray, moments, place, submerged
 
 #: sums of `side_steps` [J]: done by the structure's side push, which a section takes from nowhere; lost to friction on
@@ -21,10 +21,25 @@ from rubble.geometry import Array, IntArray, moments, place, submerged
 PUSHED, RUBBED, DRAGGED, ACROSS = 0, 1, 3, 4
 
 
-@njit("void(float64, float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], "
-      "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
-def side_steps(dt: float, mu_ice: float, half_rho_cd: float, feed: float, polygons: Array, offset: IntArray,
-               mass: Array, state: Array, sums: Array, side: Array, load: Array, work: Array) -> None:
+@compiled(
+    "void(float64, float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], "
+    "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])",
+    nogil=True,
+)
+def side_steps(
+    dt: float,
+    mu_ice: float,
+    half_rho_cd: float,
+    feed: float,
+    polygons: Array,
+    offset: IntArray,
+    mass: Array,
+    state: Array,
+    sums: Array,
+    side: Array,
+    load: Array,
+    work: Array,
+) -> None:
     """Move the blocks of a section across by one window; ``load`` (n, 3) becomes the mean force on the structure [N].
 
     ``sums`` as in `contacts`; ``side`` (2, n): y and v_y, changed here; ``mass`` with added mass; ``half_rho_cd`` =
@@ -51,16 +66,21 @@ def side_steps(dt: float, mu_ice: float, half_rho_cd: float, feed: float, polygo
             work[PUSHED] -= 0.5 * mass[i] * (v * v - slower * slower)
             load[i, 1] += mass[i] * (v - slower) / dt
             v = slower
-        wet = moments(submerged(place(polygons[offset[i]:offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0)))
+        wet = moments(
+            submerged(place(polygons[offset[i] : offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0))
+        )
         side[1, i] = v / (1.0 + dt * half_rho_cd * wet[0] * abs(v) / mass[i])
         side[0, i] += dt * side[1, i]
         work[DRAGGED] += 0.5 * mass[i] * (v * v - side[1, i] ** 2)
 
 
-@njit("bool_(float64[:, ::1], float64[:, ::1], float64, float64, float64, float64, float64, float64)", cache=True,
-      nogil=True)
-def all_inside(state: Array, side: Array, y: float, half: float, x_min: float, x_max: float, y_max: float,
-               depth: float) -> bool:
+@compiled(
+    "bool_(float64[:, ::1], float64[:, ::1], float64, float64, float64, float64, float64, float64)",
+    nogil=True,
+)
+def all_inside(
+    state: Array, side: Array, y: float, half: float, x_min: float, x_max: float, y_max: float, depth: float
+) -> bool:
     """Whether all blocks are within the section's half width about y and within the domain (`layer.Domain`)."""
     inside = True
     for i in range(state.shape[0]):

@@ -52,8 +52,17 @@ class Domain:
 class RubbleLayer:
     """Blocks in sections of width ``pitch``; ``solids(y)`` gives the structure, ``revolved`` or plane."""
 
-    def __init__(self, physics: RubblePhysics, pitch: float, *, origin: float = 0.0, solids: Solids = no_solids,
-                 revolved: bool = False, domain: Domain | None = None, threads: int = 1) -> None:
+    def __init__(
+        self,
+        physics: RubblePhysics,
+        pitch: float,
+        *,
+        origin: float = 0.0,
+        solids: Solids = no_solids,
+        revolved: bool = False,
+        domain: Domain | None = None,
+        threads: int = 1,
+    ) -> None:
         if not (isfinite(pitch) and pitch > 0):
             raise ValueError(f"section pitch is {pitch:g} m; a section needs a width > 0")
         self.physics, self.pitch, self.origin = physics, pitch, origin
@@ -93,7 +102,7 @@ class RubbleLayer:
         return self.sections[key]
 
     def centre(self, key: int) -> float:
-        """y of a section's middle plane [m]."""
+        """Y of a section's middle plane [m]."""
         return self.origin + key * self.pitch
 
     def key_at(self, y: float) -> int:
@@ -106,9 +115,22 @@ class RubbleLayer:
         """What is left of an outline (k, 2) outside the structure in a section, convex; (0, 2) if nothing is."""
         return self.section(section).trim(polygon)
 
-    def add_block(self, section: int, polygon_world: Array, strip_edges: Array, strip_widths: Array, density: float,
-                  velocity: Sequence[float], omega: float, y: float, fragment_id: int, angle: float = 0.0, *,
-                  flooded: bool | None = None, alone: bool = True) -> int:
+    def add_block(
+        self,
+        section: int,
+        polygon_world: Array,
+        strip_edges: Array,
+        strip_widths: Array,
+        density: float,
+        velocity: Sequence[float],
+        omega: float,
+        y: float,
+        fragment_id: int,
+        angle: float = 0.0,
+        *,
+        flooded: bool | None = None,
+        alone: bool = True,
+    ) -> int:
         """Make a block from a convex outline (k, 2) in world x, z; returns its number.
 
         ``strip_edges`` (s + 1,) are places along the block's axis, which stands at ``angle`` [rad] from x: ``x cos +
@@ -117,8 +139,20 @@ class RubbleLayer:
         new piece. ValueError if it stands in the structure or, unless ``alone`` is False, in another block.
         """
         full = self.physics.backfill == "full" if flooded is None else flooded
-        block = make_block(self._next, self.physics, polygon_world, strip_edges, strip_widths, density,
-                           (velocity[0], velocity[-1]), omega, y, fragment_id, angle, float(full))
+        block = make_block(
+            self._next,
+            self.physics,
+            polygon_world,
+            strip_edges,
+            strip_widths,
+            density,
+            (velocity[0], velocity[-1]),
+            omega,
+            y,
+            fragment_id,
+            angle,
+            float(full),
+        )
         block.v_y = float(velocity[1]) if len(velocity) == 3 else 0.0
         self.section(section).add(block, alone=alone)
         self._next += 1
@@ -136,9 +170,18 @@ class RubbleLayer:
         """All blocks in the order of their numbers."""
         return sorted((b for s in self.sections.values() for b in s.blocks), key=lambda b: b.id)
 
-    def set_sheet(self, section: int, x: Array, z: Array, front: float, velocity: Array, thickness: float,
-                  stiffness: tuple[float, float], inertia: tuple[float, float],
-                  applied: tuple[float, float] = (0.0, 0.0)) -> None:
+    def set_sheet(
+        self,
+        section: int,
+        x: Array,
+        z: Array,
+        front: float,
+        velocity: Array,
+        thickness: float,
+        stiffness: tuple[float, float],
+        inertia: tuple[float, float],
+        applied: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         """Where the sheet is at the start of a window; meanings as in `coupling.interface.SheetEdge`.
 
         ``applied`` is the rubble's force (Fx, Fz) that the lattice already carries in this position; see `sheet`.
@@ -190,13 +233,26 @@ class RubbleLayer:
             return
         if not np.isfinite(section.state).all():
             lost = section.blocks[int(np.argmin(np.isfinite(section.state).all(axis=1)))].id
-            raise RuntimeError(f"block {lost} in the section at y = {section.y:g} m, t = {self.time:g} s: its motion "
-                               "is not finite; shorten rubble.substep")
+            raise RuntimeError(
+                f"block {lost} in the section at y = {section.y:g} m, t = {self.time:g} s: its motion "
+                "is not finite; shorten rubble.substep"
+            )
         p, side = self.physics, section.side
         mu = 0.1 if p.mu_ice_ice == RATE_DEPENDENT else float(p.mu_ice_ice)  # across: sliding, the upper end of speed
-        side_steps(self._window, mu, p.rho_w / 2 * p.form_drag, p.feed_speed, section.polygons, section.corners,
-                   section.moved, section.state, section.sums, side.copy() if self.hold_across else side, section.load,
-                   section.across_work)
+        side_steps(
+            self._window,
+            mu,
+            p.rho_w / 2 * p.form_drag,
+            p.feed_speed,
+            section.polygons,
+            section.corners,
+            section.moved,
+            section.state,
+            section.sums,
+            side.copy() if self.hold_across else side,
+            section.load,
+            section.across_work,
+        )
         section.update_phases()
         if section.heavy[0, 0] > 0:
             mass, momentum, energy = crush(section, self._window)
@@ -271,6 +327,7 @@ class RubbleLayer:
     @property
     def energy(self) -> dict[str, float]:
         """See `table.energy`; with ``drag``, what drag in the plane has taken so far, and ``dry``, the work of dry
-        tops, by which the potential energy falls short."""
+        tops, by which the potential energy falls short.
+        """
         losses = sum((s.losses[:4] for s in self.sections.values()), np.zeros(4))
         return {**table.energy(self.blocks, self.physics), "drag": float(losses[0]), "dry": float(losses[3])}

@@ -15,9 +15,9 @@ pressure without any velocity: *correction*. M counts the added mass: the water 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from rubble.arbiters import read_contact
+from rubble.compiled import compiled
 from rubble.friction import SHEET_SLOT, slot_of
 from rubble.geometry import Array
 from rubble.pointers import IntArray, integer, real, short
@@ -31,10 +31,11 @@ NEAR = 1e-4  #: way of a correction over which the pressure counts as constant [
 STOCK = 2
 
 
-@njit("void(int64[::1], int64[::1], float64[:, ::1], float64, int64, float64[:, ::1], float64[::1])", cache=True,
-      nogil=True)
-def kick(bodies: IntArray, layout: IntArray, state: Array, dt: float, blocks: int, kicked: Array,
-         work: Array) -> None:
+@compiled(
+    "void(int64[::1], int64[::1], float64[:, ::1], float64, int64, float64[:, ::1], float64[::1])",
+    nogil=True,
+)
+def kick(bodies: IntArray, layout: IntArray, state: Array, dt: float, blocks: int, kicked: Array, work: Array) -> None:
     """Velocities (n, 3) that the forces in the bodies will have made, before contacts, and what the kick adds."""
     for i in range(bodies.shape[0]):
         gain = 0.0
@@ -47,10 +48,23 @@ def kick(bodies: IntArray, layout: IntArray, state: Array, dt: float, blocks: in
             work[STEPPING] += gain
 
 
-@njit("void(float64[:, ::1], float64[:, ::1], float64, float64[:, ::1], float64[:, ::1], int64[::1], float64, "
-      "float64[:, ::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
-def settle(old: Array, state: Array, dt: float, dead: Array, edges: Array, offset: IntArray, rho_g: float,
-           pressure: Array, kicked: Array, work: Array) -> None:
+@compiled(
+    "void(float64[:, ::1], float64[:, ::1], float64, float64[:, ::1], float64[:, ::1], int64[::1], float64, "
+    "float64[:, ::1], float64[:, ::1], float64[::1])",
+    nogil=True,
+)
+def settle(
+    old: Array,
+    state: Array,
+    dt: float,
+    dead: Array,
+    edges: Array,
+    offset: IntArray,
+    rho_g: float,
+    pressure: Array,
+    kicked: Array,
+    work: Array,
+) -> None:
     """After a step: ``kicked`` becomes the velocity at which contacts do their work, and the correction is booked.
 
     A way up to `NEAR` changes the water's energy by the pressure times the way; along a longer one, as of blocks that
@@ -74,10 +88,20 @@ def settle(old: Array, state: Array, dt: float, dead: Array, edges: Array, offse
             work[CORRECTION] -= water_energy(edges, start, end, z, angle, rho_g)
 
 
-@njit("void(int64[::1], int64[::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], int64, float64[::1])",
-      cache=True, nogil=True)
-def contact_work(header: IntArray, pairs: IntArray, layout: IntArray, addresses: IntArray, slots: IntArray,
-                 middle: Array, sheet_row: int, work: Array) -> None:
+@compiled(
+    "void(int64[::1], int64[::1], int64[::1], int64[::1], int64[::1], float64[:, ::1], int64, float64[::1])",
+    nogil=True,
+)
+def contact_work(
+    header: IntArray,
+    pairs: IntArray,
+    layout: IntArray,
+    addresses: IntArray,
+    slots: IntArray,
+    middle: Array,
+    sheet_row: int,
+    work: Array,
+) -> None:
     """Adds what each contact of a sub-step takes; ``middle`` (n, 3) from `settle`, the rest as in `accumulate`."""
     v = np.empty(9)
     for k in range(header[0]):
@@ -102,12 +126,27 @@ def contact_work(header: IntArray, pairs: IntArray, layout: IntArray, addresses:
             work[FRICTION + kind] -= v[4] * ux + v[5] * uz - normal
 
 
-@njit("void(int64[::1], int64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], int64[::1], float64[::1], "
-      "float64, float64, float64, float64[::1])", cache=True, nogil=True)
-def stock(bodies: IntArray, layout: IntArray, state: Array, side: Array, edges: Array, offset: IntArray, mass: Array,
-          rho_g: float, g: float, afloat: float, out: Array) -> None:
+@compiled(
+    "void(int64[::1], int64[::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], int64[::1], float64[::1], "
+    "float64, float64, float64, float64[::1])",
+    nogil=True,
+)
+def stock(
+    bodies: IntArray,
+    layout: IntArray,
+    state: Array,
+    side: Array,
+    edges: Array,
+    offset: IntArray,
+    mass: Array,
+    rho_g: float,
+    g: float,
+    afloat: float,
+    out: Array,
+) -> None:
     """Energy of the blocks of a section as they are, see STOCK; ``mass`` (n,) is the true one [kg], ``afloat`` the
-    energy of ice afloat, from which they count [J/kg]."""
+    energy of ice afloat, from which they count [J/kg].
+    """
     out[:] = 0.0
     for i in range(mass.shape[0]):
         moving, turning = 1.0 / real(bodies[i] + layout[9]), real(bodies[i] + layout[10])

@@ -26,7 +26,7 @@ def _convex_runs(face: Array) -> list[Array]:
     left_turn = step[:-1, 0] * step[1:, 1] - step[:-1, 1] * step[1:, 0]
     scale = np.hypot(*step[:-1].T) * np.hypot(*step[1:].T)
     ends = [0, *(np.flatnonzero(left_turn > 1e-9 * scale) + 1).tolist(), len(face) - 1]
-    return [face[a:b + 1] for a, b in pairwise(ends)]
+    return [face[a : b + 1] for a, b in pairwise(ends)]
 
 
 def _closed(part: Array, back: float | None) -> Array:
@@ -34,8 +34,9 @@ def _closed(part: Array, back: float | None) -> Array:
         rear = part[::-1] * np.array([-1.0, 1.0])
     else:
         if part[:, 0].max() >= back:
-            raise ValueError(f"back of the structure at {back:g} m lies ahead of its face; give more than "
-                             f"{part[:, 0].max():g} m")
+            raise ValueError(
+                f"back of the structure at {back:g} m lies ahead of its face; give more than {part[:, 0].max():g} m"
+            )
         rear = np.array([(back, part[-1, 1]), (back, part[0, 1])])
     loop = np.concatenate([part, rear])
     return loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]

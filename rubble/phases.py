@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from rubble.compiled import compiled
 from rubble.geometry import Array, IntArray
 
 ROTATING, SLIDING = 1, 2  #: numbers of `coupling.interface.Phase`
 
 
-@njit("bool_(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64, int64[:, ::1])", cache=True,
-      nogil=True)
+@compiled(
+    "bool_(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64, int64[:, ::1])",
+    nogil=True,
+)
 def update_phases(slopes: Array, axes: Array, state: Array, sums: Array, tolerance: float, status: IntArray) -> bool:
     """Bring ``status`` (n, 2), aligned and phase, up to date; says whether anything has changed.
 

@@ -56,8 +56,11 @@ class RubblePhysics:
 
     @staticmethod
     def _check_word(name: str, value: str) -> None:
-        words = {"mu_ice_ice": (RATE_DEPENDENT,), "mu_structure": (RATE_DEPENDENT,),
-                 "backfill": ("full", "none", "filling")}.get(name, ())
+        words = {
+            "mu_ice_ice": (RATE_DEPENDENT,),
+            "mu_structure": (RATE_DEPENDENT,),
+            "backfill": ("full", "none", "filling"),
+        }.get(name, ())
         if value not in words:
             raise ValueError(f"rubble.{name} is '{value}'; choose " + (" or ".join(words) or "a number"))
 
@@ -78,5 +81,15 @@ class RubblePhysics:
 
 
 _MAY_BE_INFINITE = ("contact_strength", "feed_speed")
-_POSITIVE = ("rho_i", "rho_w", "thickness", "slop_ratio", "iterations", "substep", "sheet_mass", "filling_time",
-             "contact_strength", "feed_speed")
+_POSITIVE = (
+    "rho_i",
+    "rho_w",
+    "thickness",
+    "slop_ratio",
+    "iterations",
+    "substep",
+    "sheet_mass",
+    "filling_time",
+    "contact_strength",
+    "feed_speed",
+)

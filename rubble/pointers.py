@@ -75,6 +75,7 @@ def _reader(kind: Any, memory: Any) -> Any:
             return builder.sext(value, ir.IntType(64)) if memory == ir.IntType(32) else value
 
         return kind(types.int64), codegen
+
     return intrinsic_of
 
 
@@ -85,6 +86,7 @@ def _writer(kind: Any, memory: Any) -> Any:
             return context.get_dummy_value()
 
         return types.void(types.int64, kind), codegen
+
     return intrinsic_of
 
 

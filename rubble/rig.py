@@ -10,8 +10,15 @@ from rubble.layer import RubbleLayer
 class Hinge:
     """A moment-free connection of a block with a point that moves at a given velocity."""
 
-    def __init__(self, layer: RubbleLayer, section: int, block: int, x: float, z: float,
-                 velocity: tuple[float, float] = (0.0, 0.0)) -> None:
+    def __init__(
+        self,
+        layer: RubbleLayer,
+        section: int,
+        block: int,
+        x: float,
+        z: float,
+        velocity: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         """At (x, z) [m]; ``velocity`` [m/s]."""
         own = layer.section(section)
         self.body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)

@@ -48,8 +48,17 @@ class Section:
         self.thrust_work = 0.0  #: [J]
         self.sheet_sums = np.zeros(8)  #: see `contacts.accumulate`
         self.heavy = np.zeros((HEAVY + 1, HEAVY_COLUMNS))
-        self.water = np.array([physics.rho_w * physics.g, physics.rho_w / 2, physics.form_drag, physics.skin_drag,
-                               physics.substep, physics.backfill_level, physics.filling_rate])
+        self.water = np.array(
+            [
+                physics.rho_w * physics.g,
+                physics.rho_w / 2,
+                physics.form_drag,
+                physics.skin_drag,
+                physics.substep,
+                physics.backfill_level,
+                physics.filling_rate,
+            ]
+        )
         for solid in self.solids:
             self._add_solid(solid)
         self._connect()
@@ -70,8 +79,9 @@ class Section:
         self.sums[:] = state["sums"]
 
     def _add_solid(self, solid: Array) -> None:
-        self.space.add(Solid(self.space.static_body, solid, self.physics.restitution**0.5, STRUCTURE,
-                             STRUCTURE_CATEGORY))
+        self.space.add(
+            Solid(self.space.static_body, solid, self.physics.restitution**0.5, STRUCTURE, STRUCTURE_CATEGORY)
+        )
 
     # ---- blocks and sheet -------------------------------------------------------------------------------------
 
@@ -103,8 +113,11 @@ class Section:
         """
         block.shape.cache_bb()
         number: dict[pymunk.Shape | None, Block] = {b.shape: b for b in self.blocks}
-        found = [(max((-p.distance for p in info.contact_point_set.points), default=0.0), number.get(info.shape))
-                 for info in self.space.shape_query(block.shape) if info.shape is not None]
+        found = [
+            (max((-p.distance for p in info.contact_point_set.points), default=0.0), number.get(info.shape))
+            for info in self.space.shape_query(block.shape)
+            if info.shape is not None
+        ]
         return max(found, key=lambda f: (f[0], f[1].id if f[1] else -1), default=(0.0, None))
 
     def take(self, block: Block) -> None:
@@ -113,9 +126,17 @@ class Section:
         self.blocks = [b for b in self.blocks if b is not block]
         self.changed()
 
-    def set_sheet(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
-                  stiffness: tuple[float, float], inertia: tuple[float, float],
-                  applied: tuple[float, float] = (0.0, 0.0)) -> None:
+    def set_sheet(
+        self,
+        x: Array,
+        z: Array,
+        front: float,
+        velocity: Array,
+        thickness: float,
+        stiffness: tuple[float, float],
+        inertia: tuple[float, float],
+        applied: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
         """Where the sheet is at the start of a window; see `SheetBody.follow`."""
         if self.sheet is None:
             self.sheet = SheetBody(self.space, self.physics, x, z, velocity)
@@ -144,9 +165,10 @@ class Section:
         self._limit = np.array([*limit, limit[0] * limit[1] * min(widths, default=0.0), *widths])
         moving = [b.body for b in blocks] + ([self.sheet.body] if self.sheet is not None else [])
         self._bodies = np.array([address(body._body) for body in moving], np.int64)
-        slots = [*range(len(blocks)), SHEET_SLOT][:len(moving)]
-        self._addresses, self._slots = slot_table([address(self.space.static_body._body), *self._bodies.tolist()],
-                                                  [STRUCTURE_SLOT, *slots])
+        slots = [*range(len(blocks)), SHEET_SLOT][: len(moving)]
+        self._addresses, self._slots = slot_table(
+            [address(self.space.static_body._body), *self._bodies.tolist()], [STRUCTURE_SLOT, *slots]
+        )
         outlines = [b.prism.polygon for b in blocks]
         self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
         self.corners = np.cumsum([0, *map(len, outlines)], dtype=np.int64)
@@ -161,13 +183,18 @@ class Section:
             block.across, block.load, block.pressure = self.side[:, i], self.load[i], self._pressure[i]
         self._flooded = np.array([b.flooded for b in blocks], np.float64)
         #: see `phases.update_phases`
-        self.axes = np.array([(b.prism.reach + self.physics.thickness, b.prism.long_axis,
-                               np.pi if b.prism.slender else np.pi / 2) for b in blocks], np.float64).reshape(-1, 3)
+        self.axes = np.array(
+            [
+                (b.prism.reach + self.physics.thickness, b.prism.long_axis, np.pi if b.prism.slender else np.pi / 2)
+                for b in blocks
+            ],
+            np.float64,
+        ).reshape(-1, 3)
         self.status = np.array([(b.aligned, b.phase) for b in blocks], np.int64).reshape(-1, 2)
         self.sums = np.zeros((len(blocks), SUM_COLUMNS))
         self._state = np.zeros((len(moving), STATE_COLUMNS))  #: of blocks and sheet, current inside the kernels
         read_bodies(self._bodies, _BODY, self._state)
-        self.state = self._state[:len(blocks)].copy()  #: of the blocks, in their order
+        self.state = self._state[: len(blocks)].copy()  #: of the blocks, in their order
         self._friction.watch(self._addresses, self._slots, self._state, len(blocks), self.side)
 
     # ---- motion -----------------------------------------------------------------------------------------------
@@ -184,7 +211,7 @@ class Section:
         done, start = 0, self.state
         while done < n_substeps:
             done += self._run(n_substeps - done)
-        self.state = self._state[:len(self.blocks)].copy()
+        self.state = self._state[: len(self.blocks)].copy()
         self.momentum_gain = self.moved @ self.state[:, 3:5] - before
         if self._thrust.any():
             self.thrust_work += float(np.vdot(self._thrust, self.state[:, :3] - start[:, :3]))
@@ -197,14 +224,43 @@ class Section:
         reader, sheet = self._reader, self.sheet
         spring, driver, nodes = (sheet.spring, sheet.driver, sheet.nodes) if sheet else (_NO, _NO, _NO_NODES)
         self.space._bodies_to_check.clear()  # masses are positive by construction
-        done = run(n, self.physics.substep, STEP, self._space, self._bodies, _BODY, self._state, self._edges,
-                   self._offset, self._dead, self.water, self._flooded, self.losses, spring, driver, reader.header,
-                   reader.pairs, reader.layout, self._addresses, self._slots, self._friction.structure, self.side,
-                   self._limit, self.sheet_sums, self.sums, nodes, self.heavy,
-                   self._pressure, self.work)
+        done = run(
+            n,
+            self.physics.substep,
+            STEP,
+            self._space,
+            self._bodies,
+            _BODY,
+            self._state,
+            self._edges,
+            self._offset,
+            self._dead,
+            self.water,
+            self._flooded,
+            self.losses,
+            spring,
+            driver,
+            reader.header,
+            reader.pairs,
+            reader.layout,
+            self._addresses,
+            self._slots,
+            self._friction.structure,
+            self.side,
+            self._limit,
+            self.sheet_sums,
+            self.sums,
+            nodes,
+            self.heavy,
+            self._pressure,
+            self.work,
+        )
         if done < 0:
-            what = (f"{reader.header[0]} pairs in contact at once, room for {reader.capacity}" if done == -1 else
-                    "contact with a body that is no block, sheet or structure")
+            what = (
+                f"{reader.header[0]} pairs in contact at once, room for {reader.capacity}"
+                if done == -1
+                else "contact with a body that is no block, sheet or structure"
+            )
             raise RuntimeError(f"section at y = {self.y:g} m: {what}; take out blocks that overlap")
         if 2 * reader.header[0] > reader.capacity:
             reader.reserve(4 * reader.capacity)
@@ -213,8 +269,19 @@ class Section:
     def stock(self) -> Array:
         """Energy of the blocks now, see `losses.STOCK` [J]."""
         out = np.zeros(STOCK)
-        stock(self._bodies, _BODY, self.state, self.side, self._edges, self._offset, self._mass, self.water[0],
-              self.physics.g, self.physics.afloat, out)
+        stock(
+            self._bodies,
+            _BODY,
+            self.state,
+            self.side,
+            self._edges,
+            self._offset,
+            self._mass,
+            self.water[0],
+            self.physics.g,
+            self.physics.afloat,
+            out,
+        )
         return out
 
     def update_phases(self) -> None:
@@ -230,5 +297,18 @@ class Section:
 _NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
 _ADDRESSES = {"_reader", "_space", "_friction", "_bodies", "_addresses", "_slots", "_state"}
 #: laid out anew from the blocks by `changed`
-_TABLES = {"_edges", "_offset", "_dead", "_limit", "polygons", "corners", "moved", "side", "load", "_flooded", "axes",
-           "status", "state"}
+_TABLES = {
+    "_edges",
+    "_offset",
+    "_dead",
+    "_limit",
+    "polygons",
+    "corners",
+    "moved",
+    "side",
+    "load",
+    "_flooded",
+    "axes",
+    "status",
+    "state",
+}

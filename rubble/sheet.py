@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 import pymunk
-from numba import njit
 
+from rubble.compiled import compiled
 from rubble.friction import SHEET
 from rubble.geometry import Array
 from rubble.physics import RubblePhysics
@@ -27,7 +27,7 @@ from rubble.physics import RubblePhysics
 ICE_SHEET, STRUCTURE_CATEGORY = 0b10, 0b100  #: collision categories; the lattice does the contact between these two
 
 
-@njit("void(float64[::1], float64, float64[::1], float64[::1], float64[::1])", cache=True, nogil=True)
+@compiled("void(float64[::1], float64, float64[::1], float64[::1], float64[::1])", nogil=True)
 def spring_force(spring: Array, dt: float, driver: Array, state: Array, force: Array) -> None:
     """Force on the sheet body, and one step of its driver.
 
@@ -56,8 +56,17 @@ class SheetBody:
         self._corners = np.zeros((0, 4, 2))
         space.add(self.body)
 
-    def follow(self, x: Array, z: Array, front: float, velocity: Array, thickness: float,
-               stiffness: tuple[float, float], inertia: tuple[float, float], applied: tuple[float, float]) -> None:
+    def follow(
+        self,
+        x: Array,
+        z: Array,
+        front: float,
+        velocity: Array,
+        thickness: float,
+        stiffness: tuple[float, float],
+        inertia: tuple[float, float],
+        applied: tuple[float, float],
+    ) -> None:
         """Take over the lattice's motion in a window, from its start.
 
         The edge moves with those nodes that met rubble in the last window, weighted with the force; without contact,
@@ -97,8 +106,9 @@ class SheetBody:
         self.shapes = [pymunk.Poly(self.body, corners) for corners in local.tolist()]
         for shape in self.shapes:
             shape.elasticity, shape.collision_type = self.physics.restitution**0.5, SHEET
-            shape.filter = pymunk.ShapeFilter(categories=ICE_SHEET,
-                                              mask=pymunk.ShapeFilter.ALL_MASKS() ^ STRUCTURE_CATEGORY)
+            shape.filter = pymunk.ShapeFilter(
+                categories=ICE_SHEET, mask=pymunk.ShapeFilter.ALL_MASKS() ^ STRUCTURE_CATEGORY
+            )
         self.space.add(*self.shapes)
 
     def remove(self) -> None:
@@ -121,7 +131,7 @@ def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance
     return _pieces(points, thickness / 2, tolerance)
 
 
-@njit("float64[:, :, ::1](float64[:, ::1], float64, float64)", cache=True, nogil=True)
+@compiled("float64[:, :, ::1](float64[:, ::1], float64, float64)", nogil=True)
 def _pieces(line: Array, half: float, tolerance: float) -> Array:
     """The straight pieces of a line (n, 2) with x decreasing, as counter-clockwise quadrangles of thickness 2 half."""
     out = np.empty((line.shape[0] - 1, 4, 2))

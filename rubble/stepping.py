@@ -9,9 +9,9 @@ the library keeps them.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from pymunk._chipmunk_cffi import ffi, lib
 
+from rubble.compiled import compiled
 from rubble.contacts import accumulate
 from rubble.geometry import Array
 from rubble.losses import contact_work, kick, settle
@@ -22,7 +22,7 @@ from rubble.water import apply_water
 STEP = address(ffi.addressof(lib, "cpSpaceStep"))
 
 
-@njit("void(int64[::1], int64[::1], float64[:, ::1])", cache=True, nogil=True)
+@compiled("void(int64[::1], int64[::1], float64[:, ::1])", nogil=True)
 def read_bodies(bodies: IntArray, layout: IntArray, state: Array) -> None:
     """State rows of bodies, given by their addresses; ``layout`` as in `pointers.body_offsets`."""
     for i in range(bodies.shape[0]):
@@ -30,15 +30,44 @@ def read_bodies(bodies: IntArray, layout: IntArray, state: Array) -> None:
             state[i, k] = real(bodies[i] + layout[k])
 
 
-@njit("int64(int64, float64, int64, int64, int64[::1], int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], "
-      "float64[:, ::1], float64[::1], float64[::1], float64[::1], float64[::1], float64[::1], int64[::1], int64[::1], "
-      "int64[::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], "
-      "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
-def run(n: int, dt: float, step: int, space: int, bodies: IntArray, layout: IntArray, state: Array, edges: Array,
-        offset: IntArray, dead: Array, water: Array, flooded: Array, losses: Array, spring: Array, driver: Array,
-        header: IntArray, pairs: IntArray, pair_layout: IntArray, addresses: IntArray, slots: IntArray, law: Array,
-        side: Array, limit: Array, sheet: Array, sums: Array, nodes: Array, heavy: Array,
-        pressure: Array, work: Array) -> int:
+@compiled(
+    "int64(int64, float64, int64, int64, int64[::1], int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], "
+    "float64[:, ::1], float64[::1], float64[::1], float64[::1], float64[::1], float64[::1], int64[::1], int64[::1], "
+    "int64[::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], "
+    "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])",
+    nogil=True,
+)
+def run(
+    n: int,
+    dt: float,
+    step: int,
+    space: int,
+    bodies: IntArray,
+    layout: IntArray,
+    state: Array,
+    edges: Array,
+    offset: IntArray,
+    dead: Array,
+    water: Array,
+    flooded: Array,
+    losses: Array,
+    spring: Array,
+    driver: Array,
+    header: IntArray,
+    pairs: IntArray,
+    pair_layout: IntArray,
+    addresses: IntArray,
+    slots: IntArray,
+    law: Array,
+    side: Array,
+    limit: Array,
+    sheet: Array,
+    sums: Array,
+    nodes: Array,
+    heavy: Array,
+    pressure: Array,
+    work: Array,
+) -> int:
     """Do up to ``n`` sub-steps and returns how many; fewer when the list of pairs (``header``) is half full.
 
     ``state`` holds the blocks and, in its last row, the sheet if there is one; valid after every step. -1: a pair
@@ -65,8 +94,13 @@ def run(n: int, dt: float, step: int, space: int, bodies: IntArray, layout: IntA
             sheet[2], sheet[3] = state[sheet_row, 3], state[sheet_row, 4]
         if header[0] > header[1]:
             return -1
-        if header[0] > 0 and accumulate(header, pairs, pair_layout, addresses, slots, state, law, side, limit, sheet,
-                                        sums, nodes, heavy) > 0:
+        if (
+            header[0] > 0
+            and accumulate(
+                header, pairs, pair_layout, addresses, slots, state, law, side, limit, sheet, sums, nodes, heavy
+            )
+            > 0
+        ):
             return -2
         contact_work(header, pairs, pair_layout, addresses, slots, kicked, sheet_row, work)
         if 2 * header[0] > header[1]:

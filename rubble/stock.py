@@ -40,14 +40,26 @@ def books(layer: RubbleLayer) -> dict[str, float]:
     for s in layer.sections.values():
         now, work, water, across = now + s.stock(), work + s.work, water + s.losses[:WATER_SUMS], across + s.across_work
         thrust += s.thrust_work
-    pairs = {f"{word}_{name}_loss": float(work[first + k]) for k, name in enumerate(PAIRS)
-             for word, first in (("impact", IMPACT), ("friction", FRICTION))}
+    pairs = {
+        f"{word}_{name}_loss": float(work[first + k])
+        for k, name in enumerate(PAIRS)
+        for word, first in (("impact", IMPACT), ("friction", FRICTION))
+    }
     return {
-        "rubble_kinetic": float(now[0]), "rubble_potential": float(now[1]), "thrust_work": thrust,
-        "sheet_work": float(work[ON_SHEET]), "drag_loss": float(water[0]), "dry_top_loss": -float(water[3]), **pairs,
-        "side_friction_structure_loss": float(across[RUBBED]), "side_friction_ice_loss": float(across[RUBBED + 1]),
-        "side_drag_loss": float(across[DRAGGED]), "side_impact_loss": layer.side_impact,
-        "side_push_loss": -float(across[PUSHED]), "stepping_loss": -float(work[STEPPING] + water[4]),
-        "correction_loss": -float(work[CORRECTION]), "crushed_energy_loss": layer.crushed_energy,
+        "rubble_kinetic": float(now[0]),
+        "rubble_potential": float(now[1]),
+        "thrust_work": thrust,
+        "sheet_work": float(work[ON_SHEET]),
+        "drag_loss": float(water[0]),
+        "dry_top_loss": -float(water[3]),
+        **pairs,
+        "side_friction_structure_loss": float(across[RUBBED]),
+        "side_friction_ice_loss": float(across[RUBBED + 1]),
+        "side_drag_loss": float(across[DRAGGED]),
+        "side_impact_loss": layer.side_impact,
+        "side_push_loss": -float(across[PUSHED]),
+        "stepping_loss": -float(work[STEPPING] + water[4]),
+        "correction_loss": -float(work[CORRECTION]),
+        "crushed_energy_loss": layer.crushed_energy,
         "cleared_energy_loss": layer.cleared_energy,
     }

@@ -47,13 +47,20 @@ def gather(sections: Mapping[int, Section]) -> Table:
     corner = np.repeat(start - offset[:-1], count) + np.arange(offset[-1])
     number = np.repeat(np.array(list(sections), np.int64), [len(s.blocks) for s in sections.values()])
     return Table(
-        id=ids[order], fragment=np.array([b.fragment for b in blocks], np.int64)[order], section=number[order],
+        id=ids[order],
+        fragment=np.array([b.fragment for b in blocks], np.int64)[order],
+        section=number[order],
         phase=np.array([b.phase for b in blocks], np.int64)[order],
-        mass=np.array([b.mass for b in blocks])[order], width=np.array([b.prism.width for b in blocks])[order],
-        position=np.stack([state[:, 0], y, state[:, 1]], -1), angle=state[:, 2].copy(),
-        velocity=np.stack([state[:, 3], v_y, state[:, 4]], -1), omega=state[:, 5].copy(),
+        mass=np.array([b.mass for b in blocks])[order],
+        width=np.array([b.prism.width for b in blocks])[order],
+        position=np.stack([state[:, 0], y, state[:, 1]], -1),
+        angle=state[:, 2].copy(),
+        velocity=np.stack([state[:, 3], v_y, state[:, 4]], -1),
+        omega=state[:, 5].copy(),
         load=np.array([b.load for b in blocks]).reshape(-1, 3)[order],
-        outline=place_all(polygons[corner], offset, state), offset=offset)
+        outline=place_all(polygons[corner], offset, state),
+        offset=offset,
+    )
 
 
 def momentum(blocks: list[Block]) -> Array:
@@ -81,7 +88,8 @@ def budget(sections: Iterable[Section], window: float) -> dict[str, Array]:
 
 def energy(blocks: list[Block], physics: RubblePhysics) -> dict[str, float]:
     """Energy of blocks [J]: kinetic (true mass, in the plane and across), added (of the water that moves with them),
-    potential (weight, and work against the pressure of water all around)."""
+    potential (weight, and work against the pressure of water all around).
+    """
     kinetic = added = potential = 0.0
     for b in blocks:
         v2, om2 = float(b.body.velocity.length_squared), float(b.body.angular_velocity) ** 2

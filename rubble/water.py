@@ -21,8 +21,8 @@ pose bobbing would gain energy by (omega dt)^2 per step.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from rubble.compiled import compiled
 from rubble.geometry import Array
 from rubble.pointers import IntArray, set_real
 
@@ -43,7 +43,7 @@ WATER_SUMS = 5
 GAUSS_X, OUTER, MIDDLE = float(np.sqrt(0.15)), 5 / 18, 8 / 18  #: outer points on -1/2 ... 1/2, and weights
 
 
-@njit("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
+@compiled("UniTuple(float64, 4)(float64, float64, float64, float64, float64, float64)", nogil=True)
 def _wetted(ax: float, az: float, bx: float, bz: float, da: float, db: float) -> tuple[float, float, float, float]:
     """The part of an edge below still water, its ends at heights da and db; nothing: both ends the same."""
     if da >= 0.0 and db >= 0.0:
@@ -57,9 +57,16 @@ def _wetted(ax: float, az: float, bx: float, bz: float, da: float, db: float) ->
     return ax, az, bx, bz
 
 
-@njit("UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64)", cache=True, nogil=True)
-def _pressure(ax: float, az: float, bx: float, bz: float, width: float, z: float, rho_g: float,
-              ) -> tuple[float, float, float]:
+@compiled("UniTuple(float64, 3)(float64, float64, float64, float64, float64, float64, float64)", nogil=True)
+def _pressure(
+    ax: float,
+    az: float,
+    bx: float,
+    bz: float,
+    width: float,
+    z: float,
+    rho_g: float,
+) -> tuple[float, float, float]:
     """Force and moment of the water pressure on an edge, exact for a straight edge."""
     ax, az, bx, bz = _wetted(ax, az, bx, bz, z + az, z + bz)
     lx, lz = bx - ax, bz - az
@@ -68,7 +75,7 @@ def _pressure(ax: float, az: float, bx: float, bz: float, width: float, z: float
     return -width * mean * lz, width * mean * lx, width * (mean * (mx * lx + mz * lz) + tilt * (lx * lx + lz * lz))
 
 
-@njit("float64(float64[:, ::1], int64, int64, float64, float64, float64)", cache=True, nogil=True)
+@compiled("float64(float64[:, ::1], int64, int64, float64, float64, float64)", nogil=True)
 def water_energy(edges: Array, start: int, end: int, z: float, angle: float, rho_g: float) -> float:
     """rho_w g times the integral of depth over the submerged part of a block with water all around [J].
 
@@ -84,12 +91,17 @@ def water_energy(edges: Array, start: int, end: int, z: float, angle: float, rho
     return rho_g * total
 
 
-@njit("UniTuple(float64, 6)(float64[:, ::1], int64, float64, float64, float64, float64, float64[::1], float64, "
-      "float64, float64)", cache=True, nogil=True)
-def _lacking(edges: Array, e: int, z: float, c: float, s: float, share: float, water: Array, vx: float, vz: float,
-             om: float) -> tuple[float, float, float, float, float, float]:
+@compiled(
+    "UniTuple(float64, 6)(float64[:, ::1], int64, float64, float64, float64, float64, float64[::1], float64, "
+    "float64, float64)",
+    nogil=True,
+)
+def _lacking(
+    edges: Array, e: int, z: float, c: float, s: float, share: float, water: Array, vx: float, vz: float, om: float
+) -> tuple[float, float, float, float, float, float]:
     """Force in the section on an edge of the top if it were flooded; what it gains because it carries less (share,
-    level); the power of that; and the moment if it were flooded."""
+    level); the power of that; and the moment if it were flooded.
+    """
     ax, az = c * edges[e, 0] - s * edges[e, 1], s * edges[e, 0] + c * edges[e, 1]
     bx, bz = c * edges[e, 2] - s * edges[e, 3], s * edges[e, 2] + c * edges[e, 3]
     full_x, full_z, full_y = _pressure(ax, az, bx, bz, edges[e, 4], z, water[0])
@@ -98,11 +110,29 @@ def _lacking(edges: Array, e: int, z: float, c: float, s: float, share: float, w
     return full_x, full_z, fx - full_x, fz - full_z, power, full_y
 
 
-@njit("UniTuple(float64, 8)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, "
-      "float64, float64, float64, float64[::1])", cache=True, nogil=True, error_model="numpy", inline="always")
-def _edge_force(ax: float, az: float, bx: float, bz: float, tx: float, tz: float, width: float, z: float, c: float,
-                s: float, vx: float, vz: float, om: float, water: Array,
-                ) -> tuple[float, float, float, float, float, float, float, float]:
+@compiled(
+    "UniTuple(float64, 8)(float64, float64, float64, float64, float64, float64, float64, float64, float64, float64, "
+    "float64, float64, float64, float64[::1])",
+    nogil=True,
+    error_model="numpy",
+    inline="always",
+)
+def _edge_force(
+    ax: float,
+    az: float,
+    bx: float,
+    bz: float,
+    tx: float,
+    tz: float,
+    width: float,
+    z: float,
+    c: float,
+    s: float,
+    vx: float,
+    vz: float,
+    om: float,
+    water: Array,
+) -> tuple[float, float, float, float, float, float, float, float]:
     """Pressure and drag on one edge, all in the body frame, with cosine and sine of its angle: force, moment, power of
     drag; then pressure and drag along the outward normal, drag along the edge, and the moment of pressure. The water
     stands at height 0 when the centre stands at z.
@@ -134,14 +164,25 @@ def _edge_force(ax: float, az: float, bx: float, bz: float, tx: float, tz: float
         tangent -= k * first * ut
         couple += k * length * turn
         power -= k * (first * ut * ut + third)
-    return (normal * tz + tangent * tx, -normal * tx + tangent * tz,
-            couple - normal * along + tangent * (mx * tz - mz * tx), power, pressure, braked, tangent, twist)
+    return (
+        normal * tz + tangent * tx,
+        -normal * tx + tangent * tz,
+        couple - normal * along + tangent * (mx * tz - mz * tx),
+        power,
+        pressure,
+        braked,
+        tangent,
+        twist,
+    )
 
 
-@njit("float64(float64[:, ::1], int64, int64, float64[::1], float64, float64[:, ::1], int64, float64[::1], "
-      "float64[::1])", cache=True, nogil=True)
-def block_force(edges: Array, start: int, end: int, water: Array, share: float, state: Array, i: int, out: Array,
-                parts: Array) -> float:
+@compiled(
+    "float64(float64[:, ::1], int64, int64, float64[::1], float64, float64[:, ::1], int64, float64[::1], float64[::1])",
+    nogil=True,
+)
+def block_force(
+    edges: Array, start: int, end: int, water: Array, share: float, state: Array, i: int, out: Array, parts: Array
+) -> float:
     """Water force on the block in row ``i`` of ``state`` with the edges from ``start`` to ``end``: out see
     FORCE_COLUMNS, moments about the centre of mass [N, N m, W]; returns the height of the lowest point of its top [m].
 
@@ -161,14 +202,16 @@ def block_force(edges: Array, start: int, end: int, water: Array, share: float, 
         if edges[e, 5] > 0.0:
             lowest = min(lowest, z + s * edges[e, 0] + c * edges[e, 1], z + s * edges[e, 2] + c * edges[e, 3])
             if water[5] < 0.0 or share < 1.0:
-                full_x, full_z, more_x, more_z, gain, full_y = _lacking(edges, e, z, c, s, share, water, state[i, 3],
-                                                                        state[i, 4], om)
+                full_x, full_z, more_x, more_z, gain, full_y = _lacking(
+                    edges, e, z, c, s, share, water, state[i, 3], state[i, 4], om
+                )
                 lack, turn = lack + gain, turn + full_y
                 parts[0], parts[1] = parts[0] + full_x, parts[1] + full_z
                 parts[2], parts[3] = parts[2] + more_x, parts[3] + more_z
                 width, level, dry = width * share, z - water[5], True
         gx, gz, my, drag, pressure, braked, along, twist = _edge_force(
-            edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], tx, tz, width, level, c, s, vx, vz, om, water)
+            edges[e, 0], edges[e, 1], edges[e, 2], edges[e, 3], tx, tz, width, level, c, s, vx, vz, om, water
+        )
         fx, fz, moment, power = fx + gx, fz + gz, moment + my, power + drag
         drag_x, drag_z = drag_x + braked * tz + along * tx, drag_z - braked * tx + along * tz
         if not dry:
@@ -180,10 +223,23 @@ def block_force(edges: Array, start: int, end: int, water: Array, share: float, 
     return lowest
 
 
-@njit("void(float64[:, ::1], int64[::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], int64[::1], "
-      "int64[::1], float64[:, ::1], float64[::1])", cache=True, nogil=True)
-def apply_water(edges: Array, offset: IntArray, dead: Array, water: Array, flooded: Array, state: Array,
-                bodies: IntArray, layout: IntArray, pressure: Array, work: Array) -> None:
+@compiled(
+    "void(float64[:, ::1], int64[::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], int64[::1], "
+    "int64[::1], float64[:, ::1], float64[::1])",
+    nogil=True,
+)
+def apply_water(
+    edges: Array,
+    offset: IntArray,
+    dead: Array,
+    water: Array,
+    flooded: Array,
+    state: Array,
+    bodies: IntArray,
+    layout: IntArray,
+    pressure: Array,
+    work: Array,
+) -> None:
     """Dead load, buoyancy and drag of all blocks of a section, written into their pymunk bodies.
 
     Block i owns ``edges[offset[i]:offset[i + 1]]``, stands in row i of ``state`` and at the address ``bodies[i]`` with

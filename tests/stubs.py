@@ -16,8 +16,9 @@ from coupling.sheet_port import SheetReport
 
 M1, K1, M2, K, C = 1.0, 3.0, 2.0, 5.0, 0.4
 START = np.array([1.0, 0.0, -0.5, 0.0])  #: x_1, v_1, x_2, v_2
-WHOLE = np.array([[0, 1, 0, 0], [-(K1 + K) / M1, -C / M1, K / M1, C / M1],
-                  [0, 0, 0, 1], [K / M2, C / M2, -K / M2, -C / M2]])
+WHOLE = np.array(
+    [[0, 1, 0, 0], [-(K1 + K) / M1, -C / M1, K / M1, C / M1], [0, 0, 0, 1], [K / M2, C / M2, -K / M2, -C / M2]]
+)
 NS = 1_000_000_000
 
 
@@ -100,5 +101,4 @@ class MassBehindSpring:
 
 def edge(x, v):
     """An edge of one node."""
-    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), 1.0, np.array([0]), (1.0, 1.0),
-                     (1.0, 1.0))
+    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), 1.0, np.array([0]), (1.0, 1.0), (1.0, 1.0))

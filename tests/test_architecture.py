@@ -57,16 +57,19 @@ def test_imports_point_one_way(file):
     assert not forbidden(file.relative_to(ROOT).as_posix(), file.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(("path", "source"), [
-    ("lattice/engine.py", "import rubble.section"),
-    ("lattice/engine.py", "from coupling.interface import Frame"),
-    ("rubble/layer.py", "def f():\n    from lattice import sheet"),
-    ("coupling/scheduler.py", "import lattice"),
-    ("coupling/sheet_port.py", "import rubble"),
-    ("cosim/compare.py", "import mcap.reader"),
-    ("cosim/cli.py", "def f():\n    import rerun as rr"),
-    ("lattice/engine.py", "import pymunk"),
-])
+@pytest.mark.parametrize(
+    ("path", "source"),
+    [
+        ("lattice/engine.py", "import rubble.section"),
+        ("lattice/engine.py", "from coupling.interface import Frame"),
+        ("rubble/layer.py", "def f():\n    from lattice import sheet"),
+        ("coupling/scheduler.py", "import lattice"),
+        ("coupling/sheet_port.py", "import rubble"),
+        ("cosim/compare.py", "import mcap.reader"),
+        ("cosim/cli.py", "def f():\n    import rerun as rr"),
+        ("lattice/engine.py", "import pymunk"),
+    ],
+)
 def test_a_wrong_import_is_found(path, source):
     assert forbidden(path, source)
 

@@ -23,8 +23,10 @@ def beside(run: RunData) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, ValidationError) as error:
         what = str(error).splitlines()[0]
         return {"simulated": simulated, "refused": f"the recorded scenario cannot be read by this version: {what}"}
-    return {"simulated": simulated, "methods": {name: _row(simulated, found)
-                                                for name, found in design_loads(model).items()}}
+    return {
+        "simulated": simulated,
+        "methods": {name: _row(simulated, found) for name, found in design_loads(model).items()},
+    }
 
 
 def simulated_load(run: RunData) -> dict[str, float | None]:
@@ -40,6 +42,7 @@ def simulated_load(run: RunData) -> dict[str, float | None]:
 def _row(simulated: dict[str, float | None], found: dict[str, Any]) -> dict[str, Any]:
     if "refused" in found:
         return found
-    ratios = {f"ratio_{axis}": None if simulated[axis] is None else simulated[axis] / found[axis]
-              for axis in ("fx", "fz")}
+    ratios = {
+        f"ratio_{axis}": None if simulated[axis] is None else simulated[axis] / found[axis] for axis in ("fx", "fz")
+    }
     return {**found, **ratios}

@@ -27,8 +27,11 @@ def croasdale(k: Case) -> Load:
     H_T = 1.5 * k.w * k.h**2 * rho * k.g * c / (s - k.mu * c)
     left = 1.0 - H_B / (k.sigma_f * l_c * k.h)
     if left <= 0.0:
-        raise refuse(NAME, f"H_B = {H_B:.3g} N compresses the sheet more than its strength of {k.sigma_f:g} Pa",
-                     "this slope does not break it in bending; use less friction or a gentler slope")
+        raise refuse(
+            NAME,
+            f"H_B = {H_B:.3g} N compresses the sheet more than its strength of {k.sigma_f:g} Pa",
+            "this slope does not break it in bending; use less friction or a gentler slope",
+        )
     F_H = (H_B + H_P + H_R + H_L + H_T) / left
     terms = {"H_B": H_B, "H_P": H_P, "H_R": H_R, "H_L": H_L, "H_T": H_T}
     between = {"xi": xi, "L_c": L_c, "l_c": l_c, "compression": 1.0 / left}
@@ -52,8 +55,14 @@ def _rubble(k: Case, rho: float, xi: float) -> tuple[float, float, float]:
 def _check(k: Case) -> None:
     s, c = sin(k.a), cos(k.a)
     if c - k.mu * s <= 0.0 or s - k.mu * c <= 0.0:
-        raise refuse(NAME, f"friction {k.mu:g} on a slope of {k.a * 180 / pi:g} deg: the ice does not slide",
-                     f"use less than {min(c / s, s / c):.3g}")
+        raise refuse(
+            NAME,
+            f"friction {k.mu:g} on a slope of {k.a * 180 / pi:g} deg: the ice does not slide",
+            f"use less than {min(c / s, s / c):.3g}",
+        )
     if k.h_r > 0.0 and not 0.0 < k.th < k.a:
-        raise refuse(NAME, f"rubble slope of {k.th * 180 / pi:g} deg on a structure of {k.a * 180 / pi:g} deg",
-                     "give baseline.rubble_slope between 0 and the structure's slope")
+        raise refuse(
+            NAME,
+            f"rubble slope of {k.th * 180 / pi:g} deg on a structure of {k.a * 180 / pi:g} deg",
+            "give baseline.rubble_slope between 0 and the structure's slope",
+        )

@@ -34,11 +34,28 @@ def given(model: ScenarioModel) -> Given:
     stated = {key: getattr(model.baseline, key) for key in defaults}
     value: dict[str, Any] = {k: defaults[k][0] if v is None else v for k, v in stated.items()}
     case = Case(
-        h=i.thickness, w=width, a=s.slope, mu=model.contact.friction, sigma_f=i.flexural_strength, E=i.youngs_modulus,
-        nu=value["poisson_ratio"], rho_i=i.density, rho_w=water.density, g=water.gravity, h_r=value["rubble_height"],
-        e=value["porosity"], th=value["rubble_slope"], ph=value["friction_angle"], c=value["cohesion"],
-        mu_i=value["friction_ice_ice"], h_R=value["ride_up_thickness"], D_T=value["top_diameter"], breaking=s.breaking,
-        wide=wide, wedges=value["wedges"])
+        h=i.thickness,
+        w=width,
+        a=s.slope,
+        mu=model.contact.friction,
+        sigma_f=i.flexural_strength,
+        E=i.youngs_modulus,
+        nu=value["poisson_ratio"],
+        rho_i=i.density,
+        rho_w=water.density,
+        g=water.gravity,
+        h_r=value["rubble_height"],
+        e=value["porosity"],
+        th=value["rubble_slope"],
+        ph=value["friction_angle"],
+        c=value["cohesion"],
+        mu_i=value["friction_ice_ice"],
+        h_R=value["ride_up_thickness"],
+        D_T=value["top_diameter"],
+        breaking=s.breaking,
+        wide=wide,
+        wedges=value["wedges"],
+    )
     return Given(case, {k: defaults[k][1] for k, v in stated.items() if v is None and defaults[k][1]})
 
 

@@ -13,13 +13,16 @@ from cosim.baselines.case import Case, Load, refuse
 
 
 def nevel(k: Case) -> Load:
-    """n wedges of tip angle th = pi / n, P = sigma_f h^2 / 6 . 2 tan(th / 2) . [1.05 + 2 r/l + 0.5 (r/l)^3] [N]."""
+    """N wedges of tip angle th = pi / n, P = sigma_f h^2 / 6 . 2 tan(th / 2) . [1.05 + 2 r/l + 0.5 (r/l)^3] [N]."""
     if k.wedges < 2:
         raise refuse("Nevel", f"{k.wedges} wedge in half a circle", "give baseline.wedges of 2 or more")
     slip = cos(k.a) - k.mu * sin(k.a)
     if slip <= 0.0:
-        raise refuse("Nevel", f"friction {k.mu:g} on a slope of {k.a * 180 / pi:g} deg: the ice does not slide",
-                     f"use less than {1.0 / tan(k.a):.3g}")
+        raise refuse(
+            "Nevel",
+            f"friction {k.mu:g} on a slope of {k.a * 180 / pi:g} deg: the ice does not slide",
+            f"use less than {1.0 / tan(k.a):.3g}",
+        )
     xi = (sin(k.a) + k.mu * cos(k.a)) / slip
     length = (k.E * k.h**3 / (12.0 * k.rho_w * k.g)) ** 0.25
     ratio = 0.5 * k.w / length

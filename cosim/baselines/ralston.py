@@ -40,11 +40,17 @@ def cone_of(k: Case, name: str) -> Cone:
     s, c = sin(k.a), cos(k.a)
     g = (s + k.a / c) / (0.5 * pi * s**2 + 2.0 * k.mu * k.a * c)
     if 1.0 - k.mu * g <= 0.0:
-        raise refuse(name, f"friction {k.mu:g} on a cone of {k.a * 180 / pi:g} deg: the ice does not slide",
-                     f"it must stay below 1 / g = {1.0 / g:.3g}")
+        raise refuse(
+            name,
+            f"friction {k.mu:g} on a cone of {k.a * 180 / pi:g} deg: the ice does not slide",
+            f"it must stay below 1 / g = {1.0 / g:.3g}",
+        )
     if not 0.0 <= k.D_T < k.w:
-        raise refuse(name, f"top diameter {k.D_T:g} m of a cone of {k.w:g} m",
-                     "give baseline.top_diameter below the waterline diameter")
+        raise refuse(
+            name,
+            f"top diameter {k.D_T:g} m of a cone of {k.w:g} m",
+            "give baseline.top_diameter below the waterline diameter",
+        )
     E1, E2 = float(ellipk(s**2)), float(ellipe(s**2))
     f = s + k.mu * E1 * c
     h_v = (f * c - k.mu * E2) / (0.25 * pi * s**2 + k.mu * k.a * c)
@@ -88,7 +94,7 @@ def ralston_johansen(k: Case) -> Load:
 
 
 def _root(equation: Callable[[float], float]) -> float:
-    """lambda > 1; the equation rises from -0.369 at 1 without bound."""
+    """Lambda > 1; the equation rises from -0.369 at 1 without bound."""
     high = 2.0
     while equation(high) < 0.0:
         high *= 2.0

@@ -59,8 +59,12 @@ CASES: dict[str, ModuleType] = {
 }
 
 
-def run(case: str | None = None, settings: Mapping[str, Any] | Iterable[str] | None = None,
-        plots_dir: str | Path | None = None, quick: bool = False) -> list[CaseResult]:
+def run(
+    case: str | None = None,
+    settings: Mapping[str, Any] | Iterable[str] | None = None,
+    plots_dir: str | Path | None = None,
+    quick: bool = False,
+) -> list[CaseResult]:
     """Run one case, or all; ``settings`` need a case. ValueError with one line for anything that cannot be run."""
     changes = parse(settings)
     if case is None and changes:

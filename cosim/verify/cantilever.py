@@ -19,12 +19,28 @@ from lattice.ice import Ice
 from lattice.properties import brine_volume, youngs_modulus
 from lattice.specimens import Piece, beam_strain, cantilever, factor_f
 
-PARAMETERS: dict[str, Any] = {"L_b": 2.30, "w": 0.46, "h": 0.39, "E": 1.3e9, "nu": 1.0 / 3.0, "sigma_f": 0.186e6,
-                              "rho_i": 920.0, "rho_w": 1025.0, "ratio": 5.0, "cells": 4, "dynamic": True, "dt": 0.0}
+PARAMETERS: dict[str, Any] = {
+    "L_b": 2.30,
+    "w": 0.46,
+    "h": 0.39,
+    "E": 1.3e9,
+    "nu": 1.0 / 3.0,
+    "sigma_f": 0.186e6,
+    "rho_i": 920.0,
+    "rho_w": 1025.0,
+    "ratio": 5.0,
+    "cells": 4,
+    "dynamic": True,
+    "dt": 0.0,
+}
 #: change to the base case and f of Table 4-3
 TABLE_4_3: dict[str, tuple[dict[str, float], float]] = {
-    "base case": ({}, 0.80), "1.5 x length": ({"L_b": 1.5}, 0.80), "2 x thickness": ({"h": 2.0}, 0.84),
-    "2 x Young's modulus": ({"E": 2.0}, 0.80), "0.5 x width": ({"w": 0.5}, 0.88)}
+    "base case": ({}, 0.80),
+    "1.5 x length": ({"L_b": 1.5}, 0.80),
+    "2 x thickness": ({"h": 2.0}, 0.84),
+    "2 x Young's modulus": ({"E": 2.0}, 0.80),
+    "0.5 x width": ({"w": 0.5}, 0.88),
+}
 TABLE_4_4 = {"L_b": 4.04, "w": 0.67, "h": 0.44, "E": 2.3e9}
 FAILURE_LOAD = 1900.0  #: Table 4-4 [N]
 
@@ -54,9 +70,11 @@ def _table_4_2(p: dict[str, Any], known: bool) -> list[Quantity]:
     w = -load * float(piece.deflection()[piece.tip, 0].mean())
     E = youngs_modulus(brine_volume(2.7, -1.6))
     source = "van Vliet (2018), Table 4-2 and section 4.2.2"
-    return [value("failure load (4.27)", load, "N"),
-            near("tip deflection", w, "m", 2.0e-3 if known else None, 0.05, source),
-            near("Young's modulus at 2.7 ppt and -1.6 C", E, "Pa", 1.3e9, 0.02, source)]
+    return [
+        value("failure load (4.27)", load, "N"),
+        near("tip deflection", w, "m", 2.0e-3 if known else None, 0.05, source),
+        near("Young's modulus at 2.7 ppt and -1.6 C", E, "Pa", 1.3e9, 0.02, source),
+    ]
 
 
 def _table_4_3(p: dict[str, Any], known: bool) -> list[Quantity]:
@@ -80,10 +98,14 @@ def _table_4_4(p: dict[str, Any], known: bool) -> list[Quantity]:
     def check(name: str, number: float, unit: str, reference: float, tolerance: float) -> Quantity:
         return near(name, number, unit, reference if known else None, tolerance, source)
 
-    return [check("w1 at 1900 N", w[0], "m", 4.7e-3, 0.03), check("w2 at 1900 N", w[1], "m", 1.9e-3, 0.03),
-            value("w3 at 1900 N (thesis 0.18 mm)", w[2], "m", source), check("factor f, Table 4-4", f, "-", 0.80, 0.05),
-            value("eta_mean (printed as R_eta, 3.11e-4)", abs(mean[0]), "1/m", source),
-            value("R_eta (printed as eta_mean, 5.73e-4)", radius[0], "1/m", source)]
+    return [
+        check("w1 at 1900 N", w[0], "m", 4.7e-3, 0.03),
+        check("w2 at 1900 N", w[1], "m", 1.9e-3, 0.03),
+        value("w3 at 1900 N (thesis 0.18 mm)", w[2], "m", source),
+        check("factor f, Table 4-4", f, "-", 0.80, 0.05),
+        value("eta_mean (printed as R_eta, 3.11e-4)", abs(mean[0]), "1/m", source),
+        value("R_eta (printed as eta_mean, 5.73e-4)", radius[0], "1/m", source),
+    ]
 
 
 def at_distance(piece: Piece, q: Array, x: Array) -> Array:
@@ -97,11 +119,20 @@ def _figure_4_18(times: Array, deflection: Array, failed: float, known: bool) ->
     source = "van Vliet (2018), Figure 4-18"
     before = np.array([np.interp(failed, times, deflection[:, i]) for i in range(3)])
     one_digit = f"{source}, printed with one digit"
-    return [near("time of failure", failed, "s", 0.7 if known else None, 0.05, one_digit, "absolute"),
-            near("w1, w2 at failure, dynamic", before[:2], "m", [4.7e-3, 1.9e-3] if known else None, 0.05, source),
-            near("w1, w2 go down and w3 goes up after failure", np.sign(deflection[-1] - before), "-",
-                 [1.0, 1.0, -1.0] if known else None, 0.0, source),
-            value("time of Figure 4-18", times, "s"), value("w1, w2, w3 of Figure 4-18", deflection.T, "m")]
+    return [
+        near("time of failure", failed, "s", 0.7 if known else None, 0.05, one_digit, "absolute"),
+        near("w1, w2 at failure, dynamic", before[:2], "m", [4.7e-3, 1.9e-3] if known else None, 0.05, source),
+        near(
+            "w1, w2 go down and w3 goes up after failure",
+            np.sign(deflection[-1] - before),
+            "-",
+            [1.0, 1.0, -1.0] if known else None,
+            0.0,
+            source,
+        ),
+        value("time of Figure 4-18", times, "s"),
+        value("w1, w2, w3 of Figure 4-18", deflection.T, "m"),
+    ]
 
 
 def _figure_17(p: dict[str, Any]) -> Figure:
@@ -115,4 +146,5 @@ def _figure_17(p: dict[str, Any]) -> Figure:
         axes.plot(x, 0.4 * (1.0 / np.sqrt(1.0 - x) + 1.0 / np.sqrt(1.0 + x)), "k--", label="(4.30) with f = 0.8")
         axes.set(xlabel="2 x / w [-]", ylabel="left side of (4.29) [-]", ylim=(0, None))
         axes.legend()
+
     return Figure("figure_4-17", "Figure 4-17: strain along the root of the beam", draw)

@@ -28,8 +28,16 @@ LOOK = 20  #: steps between two looks at the criterion
 def history(p: dict[str, Any], failure_load: float, quick: bool) -> tuple[Array, Array, float]:
     """Times [s], deflections w1, w2, w3 downwards (times, 3) [m] and the time of the first failure [s]."""
     sigma_f = 6.0 * failure_load * p["L_b"] / (p["w"] * p["h"] ** 2)
-    bare = Ice(E=p["E"], nu=p["nu"], h=p["h"], rho_i=p["rho_i"], rho_w=p["rho_w"], sigma_f=sigma_f, sigma_t=sigma_f,
-               sigma_c=p["ratio"] * sigma_f)
+    bare = Ice(
+        E=p["E"],
+        nu=p["nu"],
+        h=p["h"],
+        rho_i=p["rho_i"],
+        rho_w=p["rho_w"],
+        sigma_f=sigma_f,
+        sigma_t=sigma_f,
+        sigma_c=p["ratio"] * sigma_f,
+    )
     f = factor_f(bare, p["L_b"], p["w"], int(p["cells"]), p["ratio"])
     ice = replace(bare, beam_test=BeamTest(p["L_b"], p["w"], failure_load, f))
     piece = cantilever(ice, p["L_b"], p["w"], int(p["cells"]))
@@ -68,4 +76,5 @@ def figure_18(times: Array, deflection: Array, failed: float) -> Figure:
         axes.axvline(failed, color="k", linewidth=0.6)
         axes.set(xlabel="time [s]", ylabel="deflection downwards [mm]", ylim=(-2, 15))
         axes.legend()
+
     return Figure("figure_4-18", "Figure 4-18: three points of the beam through its failure", draw)

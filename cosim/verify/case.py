@@ -46,8 +46,12 @@ class CaseResult:
 
     def as_dict(self) -> dict[str, Any]:
         """JSON object of `cosim verify --json`."""
-        return {"case": self.case, "parameters": self.parameters,
-                "quantities": [vars(q) for q in self.quantities], "passed": self.passed}
+        return {
+            "case": self.case,
+            "parameters": self.parameters,
+            "quantities": [vars(q) for q in self.quantities],
+            "passed": self.passed,
+        }
 
 
 def plain(value: Any) -> Any:
@@ -63,8 +67,9 @@ def value(name: str, number: Any, unit: str, source: str = "") -> Quantity:
     return Quantity(name, plain(number), unit, source=source)
 
 
-def near(name: str, number: Any, unit: str, reference: Any, tolerance: float, source: str,
-         measure: str = "relative") -> Quantity:
+def near(
+    name: str, number: Any, unit: str, reference: Any, tolerance: float, source: str, measure: str = "relative"
+) -> Quantity:
     """Every entry within ``tolerance`` of the reference, as part of the reference or ``absolute``; None: no check."""
     if reference is None:
         return value(name, number, unit)

@@ -22,8 +22,17 @@ from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 from rubble.rig import lock_rotation, thrust
 
-PARAMETERS: dict[str, Any] = {"radius": 15.0, "slope": 45.0, "y": [0.0, 0.5, 0.8, -0.8], "mu": 0.1, "thrust": 3.0,
-                              "across": [0.0, 0.2], "rho_i": 846.0, "rho_w": 1006.0, "g": 9.81}
+PARAMETERS: dict[str, Any] = {
+    "radius": 15.0,
+    "slope": 45.0,
+    "y": [0.0, 0.5, 0.8, -0.8],
+    "mu": 0.1,
+    "thrust": 3.0,
+    "across": [0.0, 0.2],
+    "rho_i": 846.0,
+    "rho_w": 1006.0,
+    "g": 9.81,
+}
 SOURCE = "equilibrium of a block on a cone in three dimensions"
 WIDTH, SIZE = 1.0, 1.0
 
@@ -31,10 +40,25 @@ WIDTH, SIZE = 1.0, 1.0
 def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
     """Measured and exact force on the structure (3,), mean over windows in which the block slides [N]."""
     structure = cone(radians(p["slope"]), p["radius"], toe_depth=0.9 * p["radius"] * np.tan(radians(p["slope"])))
-    physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"], mu_structure=p["mu"], form_drag=0.0,
-                            skin_drag=0.0, thickness=0.1, substep=5e-4)
-    layer = RubbleLayer(physics, WIDTH, origin=y, revolved=True, solids=lambda at: convex_parts(
-        structure.section_outline(at, structure.bottom, structure.top, OUTLINE_TOLERANCE)))
+    physics = RubblePhysics(
+        rho_i=p["rho_i"],
+        rho_w=p["rho_w"],
+        g=p["g"],
+        mu_structure=p["mu"],
+        form_drag=0.0,
+        skin_drag=0.0,
+        thickness=0.1,
+        substep=5e-4,
+    )
+    layer = RubbleLayer(
+        physics,
+        WIDTH,
+        origin=y,
+        revolved=True,
+        solids=lambda at: convex_parts(
+            structure.section_outline(at, structure.bottom, structure.top, OUTLINE_TOLERANCE)
+        ),
+    )
     z, angle = -1.5, 2.0 * np.pi * (np.arange(128) + 0.5) / 128
     n = structure.normal(y, z)
     m = n[[0, 2]] / np.hypot(n[0], n[2])
@@ -52,13 +76,23 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
         layer.advance(1)
         now = layer.table()
         measured.append(now.load[0])
-        exact.append(_statics(p, structure, y, 0.5 * (before.position[0] + now.position[0])[[0, 2]],
-                              0.5 * (before.velocity[0] + now.velocity[0]), across, lift))
+        exact.append(
+            _statics(
+                p,
+                structure,
+                y,
+                0.5 * (before.position[0] + now.position[0])[[0, 2]],
+                0.5 * (before.velocity[0] + now.velocity[0]),
+                across,
+                lift,
+            )
+        )
     return np.mean(measured[100:], axis=0), np.mean(exact[100:], axis=0)
 
 
-def _statics(p: dict[str, Any], structure: Structure, y: float, centre: Array, velocity: Array, across: float,
-             lift: float) -> Array:
+def _statics(
+    p: dict[str, Any], structure: Structure, y: float, centre: Array, velocity: Array, across: float, lift: float
+) -> Array:
     """Force on the structure (3,) of a round block at ``centre`` that slides with ``velocity``, across at a speed."""
     z = np.linspace(centre[1] - SIZE, centre[1] + SIZE, 2001)
     gap = np.hypot(structure.face_x(y, z) - centre[0], z - centre[1])
@@ -82,8 +116,9 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
             measured, exact = slide(p, share * p["radius"], across)
             error = np.abs(measured - exact).max() / np.linalg.norm(exact)
             name = f"y = {share:g} R, sideways at {across:g} m/s: "
-            quantities += [near(f"{name}Fx, Fz", measured[[0, 2]], "N", exact[[0, 2]], 0.01, SOURCE),
-                           near(f"{name}Fy", measured[1], "N", exact[1], 0.01, SOURCE),
-                           near(f"{name}largest difference, part of the force", error, "-", 0.0, 0.01, SOURCE,
-                                "absolute")]
+            quantities += [
+                near(f"{name}Fx, Fz", measured[[0, 2]], "N", exact[[0, 2]], 0.01, SOURCE),
+                near(f"{name}Fy", measured[1], "N", exact[1], 0.01, SOURCE),
+                near(f"{name}largest difference, part of the force", error, "-", 0.0, 0.01, SOURCE, "absolute"),
+            ]
     return CaseResult("cone", p, quantities)

@@ -18,7 +18,9 @@ from lattice.ice import Ice
 from lattice.spectrum import Stencil
 
 PARAMETERS: dict[str, Any] = {key: number for key, number in TABLE_2_1.items() if key not in ("Lx", "Ly")} | {
-    "d": [0.1, 1.0, 1.5, 10.0], "directions": 24}
+    "d": [0.1, 1.0, 1.5, 10.0],
+    "directions": 24,
+}
 LONG = 0.02  #: k d of the long waves that are compared
 CONTOURS = ((1.0, (500.0, 1000.0, 2000.0), "2-10"), (1.0, (3000.0,), "2-11"))  #: cell size [m], omega [rad/s], figure
 MESHES = (5.0, 66.0)  #: omega of Figure 2-18 [rad/s]
@@ -31,14 +33,28 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     for d in p["d"]:
         stencil = _stencil(ice, p, d)
         curves[d] = (stencil.dispersion(kd, 0.0), continuum.dispersion(ice, kd / d, 0.0))
-        quantities += [_long_waves(stencil, ice, d, p), value(f"lattice, d = {d:g} m", curves[d][0].T, "rad/s"),
-                       value(f"continuum, d = {d:g} m", curves[d][1].T, "rad/s")]
+        quantities += [
+            _long_waves(stencil, ice, d, p),
+            value(f"lattice, d = {d:g} m", curves[d][0].T, "rad/s"),
+            value(f"continuum, d = {d:g} m", curves[d][1].T, "rad/s"),
+        ]
     quantities += [_group_velocity(ice, p), *_anisotropy(ice, p)]
     figures = [Figure("figure_2-9", "Figure 2-9: dispersion along x", _draw_branches(kd, curves))]
-    figures += [Figure(f"figure_{number}", f"Figure {number}: contours of frequency, d = {d:g} m",
-                       _draw_contours(ice, p, [d], omegas)) for d, omegas, number in CONTOURS]
-    figures.append(Figure("figure_2-18", "Figure 2-18: contours of frequency, cell size varied",
-                          _draw_contours(ice, p, [10 / 3, 2.0, 1.0], MESHES, split=True)))
+    figures += [
+        Figure(
+            f"figure_{number}",
+            f"Figure {number}: contours of frequency, d = {d:g} m",
+            _draw_contours(ice, p, [d], omegas),
+        )
+        for d, omegas, number in CONTOURS
+    ]
+    figures.append(
+        Figure(
+            "figure_2-18",
+            "Figure 2-18: contours of frequency, cell size varied",
+            _draw_contours(ice, p, [10 / 3, 2.0, 1.0], MESHES, split=True),
+        )
+    )
     return CaseResult("dispersion", p, quantities, figures)
 
 
@@ -56,17 +72,28 @@ def _long_waves(stencil: Stencil, ice: Ice, d: float, p: dict[str, Any]) -> Any:
     theta = np.linspace(0.0, 0.5 * np.pi, int(p["directions"]))
     kx, ky = LONG * np.cos(theta), LONG * np.sin(theta)
     error = stencil.dispersion(kx, ky) / continuum.dispersion(ice, kx / d, ky / d) - 1.0
-    return limited(f"three branches at k d = {LONG:g}, all directions, d = {d:g} m: largest difference",
-                   float(np.abs(error).max()), "-", LONG**2, "(2.43)-(2.45); the lattice is of second order",
-                   _known(p))
+    return limited(
+        f"three branches at k d = {LONG:g}, all directions, d = {d:g} m: largest difference",
+        float(np.abs(error).max()),
+        "-",
+        LONG**2,
+        "(2.43)-(2.45); the lattice is of second order",
+        _known(p),
+    )
 
 
 def _group_velocity(ice: Ice, p: dict[str, Any]) -> Any:
     """The shortest wave, k d = pi, stands: its slope over the largest slope (end of section 2.4)."""
     kd = np.linspace(0.0, np.pi, 2001)
     slope = np.gradient(_stencil(ice, p, p["d"][0]).dispersion(kd, 0.0)[:, 0], kd, edge_order=2)
-    return limited("group velocity of the deflection wave at k d = pi over its largest", float(slope[-1] / slope.max()),
-                   "-", 1e-4, "van Vliet (2018), section 2.4: standing wave", _known(p))
+    return limited(
+        "group velocity of the deflection wave at k d = pi over its largest",
+        float(slope[-1] / slope.max()),
+        "-",
+        1e-4,
+        "van Vliet (2018), section 2.4: standing wave",
+        _known(p),
+    )
 
 
 def _anisotropy(ice: Ice, p: dict[str, Any]) -> list[Any]:
@@ -82,7 +109,7 @@ def _anisotropy(ice: Ice, p: dict[str, Any]) -> list[Any]:
 
 
 def contour(stencil: Stencil, omega: float, theta: Array, branch: int) -> Array:
-    """k d in direction theta at which the branch has angular frequency omega, by bisection; nan where it has none."""
+    """K d in direction theta at which the branch has angular frequency omega, by bisection; nan where it has none."""
     low, high = np.zeros(len(theta)), np.pi / np.maximum(np.abs(np.cos(theta)), np.abs(np.sin(theta)))
 
     def frequency(k: Array) -> Array:
@@ -102,13 +129,19 @@ def _draw_branches(kd: Array, curves: dict[float, tuple[Array, Array]]) -> Any:
             for branch in range(3):
                 axes.plot(kd, exact[:, branch], "-", color=f"C{branch}")
                 axes.plot(kd, ours[:, branch], "--", color=f"C{branch}")
-            axes.set(title=f"d = {d:g} m (lattice dashed)", xlabel="k_x d [-]", ylabel="omega [rad/s]",
-                     ylim=(0, 1.3 * ours.max()))
+            axes.set(
+                title=f"d = {d:g} m (lattice dashed)",
+                xlabel="k_x d [-]",
+                ylabel="omega [rad/s]",
+                ylim=(0, 1.3 * ours.max()),
+            )
+
     return draw
 
 
-def _draw_contours(ice: Ice, p: dict[str, Any], sizes: list[float], omegas: tuple[float, ...],
-                   split: bool = False) -> Any:
+def _draw_contours(
+    ice: Ice, p: dict[str, Any], sizes: list[float], omegas: tuple[float, ...], split: bool = False
+) -> Any:
     def draw(figure: Any) -> None:
         panels = figure.subplots(1, len(omegas) if split else 1, squeeze=False)[0]
         theta = np.linspace(0.0, 2.0 * np.pi, 181)
@@ -121,9 +154,15 @@ def _draw_contours(ice: Ice, p: dict[str, Any], sizes: list[float], omegas: tupl
             radii = _continuum_radii(ice, omega)
             for radius in radii:
                 axes.plot(radius * np.cos(theta), radius * np.sin(theta), "-", color="k", linewidth=0.8)
-            axes.set(aspect="equal", xlabel="k_x [1/m]", ylabel="k_y [1/m]",
-                     xlim=(-1.25 * max(radii), 1.25 * max(radii)), ylim=(-1.25 * max(radii), 1.25 * max(radii)))
+            axes.set(
+                aspect="equal",
+                xlabel="k_x [1/m]",
+                ylabel="k_y [1/m]",
+                xlim=(-1.25 * max(radii), 1.25 * max(radii)),
+                ylim=(-1.25 * max(radii), 1.25 * max(radii)),
+            )
             axes.legend(fontsize=7, loc="upper right")
+
     return draw
 
 

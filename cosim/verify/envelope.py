@@ -19,16 +19,33 @@ from lattice.limits import Strength, bending_bottom, bending_top, compression, s
 from lattice.strain import CellState
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 
-PARAMETERS: dict[str, Any] = {"sigma_t": 0.6e6, "sigma_c": 5.0e6, "sigma_spall": -28.0e6, "E": 5.0e9, "nu": 1.0 / 3.0,
-                              "h": 1.0, "stiffness": "hrennikoff", "angles": 19, "directions": 360}
+PARAMETERS: dict[str, Any] = {
+    "sigma_t": 0.6e6,
+    "sigma_c": 5.0e6,
+    "sigma_spall": -28.0e6,
+    "E": 5.0e9,
+    "nu": 1.0 / 3.0,
+    "h": 1.0,
+    "stiffness": "hrennikoff",
+    "angles": 19,
+    "directions": 360,
+}
 IN_PLANE = (tension, compression, spalling)
 SOURCE = "van Vliet (2018), section 4.1 and Figure 4-2"
 
 
 def utilisation(p: dict[str, Any], stress: Array, alpha: float, in_plane: bool) -> float:
     """Of the governing criterion under principal stresses [Pa] for a cell turned by alpha [rad]."""
-    ice = Ice(E=p["E"], nu=p["nu"], h=p["h"], rho_i=900.0, rho_w=1025.0, sigma_t=p["sigma_t"], sigma_f=p["sigma_t"],
-              sigma_c=p["sigma_c"])
+    ice = Ice(
+        E=p["E"],
+        nu=p["nu"],
+        h=p["h"],
+        rho_i=900.0,
+        rho_w=1025.0,
+        sigma_t=p["sigma_t"],
+        sigma_f=p["sigma_t"],
+        sigma_c=p["sigma_c"],
+    )
     springs = springs_of(p, ice)
     load: Callable[..., CellState] = cell_in_stress if in_plane else cell_in_bending
     state, strength = load(ice, springs, stress, alpha), Strength(ice, sigma_spall=p["sigma_spall"])
@@ -52,8 +69,10 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
         spread = float((radii.max(axis=1) / radii.min(axis=1) - 1.0).max())
         curves[name] = np.array([radius(p, e, 0.0, in_plane) for e in directions])[:, None] * directions
         label = f"{name} envelope, cell turned by 0 ... 90 degrees: largest spread"
-        quantities += [at_most(label, spread, "-", 1e-10, SOURCE),
-                       value(f"{name} envelope, sigma_11 and sigma_22", curves[name].T, "Pa")]
+        quantities += [
+            at_most(label, spread, "-", 1e-10, SOURCE),
+            value(f"{name} envelope, sigma_11 and sigma_22", curves[name].T, "Pa"),
+        ]
     return CaseResult("envelope", p, [*_points(p), *quantities], _figures(curves))
 
 
@@ -67,12 +86,20 @@ def _points(p: dict[str, Any]) -> list[Quantity]:
         return near(name, radius(p, e, 0.3, in_plane), "Pa", reference, tolerance, SOURCE)
 
     diagonal = float(np.sqrt(0.5))
-    return [point("uniaxial tension fails at", (1.0, 0.0), p["sigma_t"] if third else None),
-            point("uniaxial compression fails at", (-1.0, 0.0), p["sigma_c"] if third else None),
-            near("sum of the stresses at spalling, equal pressure",
-                 -2.0 * diagonal * radius(p, np.full(2, -diagonal), 0.3), "Pa", p["sigma_spall"], 1e-10, SOURCE),
-            point("uniaxial bending fails at", (1.0, 0.0), p["sigma_t"] if third else None, False),
-            point("uniaxial bending, other way, fails at", (-1.0, 0.0), p["sigma_t"] if third else None, False)]
+    return [
+        point("uniaxial tension fails at", (1.0, 0.0), p["sigma_t"] if third else None),
+        point("uniaxial compression fails at", (-1.0, 0.0), p["sigma_c"] if third else None),
+        near(
+            "sum of the stresses at spalling, equal pressure",
+            -2.0 * diagonal * radius(p, np.full(2, -diagonal), 0.3),
+            "Pa",
+            p["sigma_spall"],
+            1e-10,
+            SOURCE,
+        ),
+        point("uniaxial bending fails at", (1.0, 0.0), p["sigma_t"] if third else None, False),
+        point("uniaxial bending, other way, fails at", (-1.0, 0.0), p["sigma_t"] if third else None, False),
+    ]
 
 
 def _figures(curves: dict[str, Array]) -> list[Figure]:
@@ -96,6 +123,8 @@ def _figures(curves: dict[str, Array]) -> list[Figure]:
         axes_of(figure, 1, 2, "in-plane", (-5.5, 1.5))
         axes_of(figure, 2, 2, "bending", None)
 
-    return [Figure("figure_4-2", "Figure 4-2: failure envelope", whole),
-            Figure("figure_4-6", "Figure 4-6: tensile part of the envelope", tensile),
-            Figure("figure_4-8", "Figure 4-8: envelopes in the plane and in bending", both)]
+    return [
+        Figure("figure_4-2", "Figure 4-2: failure envelope", whole),
+        Figure("figure_4-6", "Figure 4-6: tensile part of the envelope", tensile),
+        Figure("figure_4-8", "Figure 4-8: envelopes in the plane and in bending", both),
+    ]

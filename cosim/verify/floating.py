@@ -12,15 +12,32 @@ from rubble.geometry import Array
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 
-PARAMETERS: dict[str, Any] = {"length": 10.0, "h": 3.0, "width": 5.0, "rho_i": 846.0, "rho_w": 1006.0, "g": 9.81,
-                              "added_mass": 0.2, "added_inertia": 0.2, "periods": 20}
+PARAMETERS: dict[str, Any] = {
+    "length": 10.0,
+    "h": 3.0,
+    "width": 5.0,
+    "rho_i": 846.0,
+    "rho_w": 1006.0,
+    "g": 9.81,
+    "added_mass": 0.2,
+    "added_inertia": 0.2,
+    "periods": 20,
+}
 SOURCE = "hydrostatics of a box: T = 2 pi sqrt((m + m_a) / (rho_w g A)), T = 2 pi sqrt((I + I_a) / (rho_w g V GM))"
 
 
 def block(p: dict[str, Any], draft: float, drag: float, omega: float = 0.0) -> RubbleLayer:
     """One box at a given draft [m]."""
-    physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"], form_drag=drag, skin_drag=0.0,
-                            added_mass=p["added_mass"], added_inertia=p["added_inertia"], thickness=p["h"])
+    physics = RubblePhysics(
+        rho_i=p["rho_i"],
+        rho_w=p["rho_w"],
+        g=p["g"],
+        form_drag=drag,
+        skin_drag=0.0,
+        added_mass=p["added_mass"],
+        added_inertia=p["added_inertia"],
+        thickness=p["h"],
+    )
     layer = RubbleLayer(physics, p["width"])
     x = p["length"] / 2.0
     outline = np.array([(-x, -draft), (x, -draft), (x, p["h"] - draft), (-x, p["h"] - draft)])
@@ -67,9 +84,26 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     rest = mean_height(p, draft, heave, 10_000 if quick else 40_000)
     level = p["h"] / 2.0 - draft
     small = 0.1 * (p["h"] - draft)
-    return CaseResult("float", p, [
-        near("draft at rest", p["h"] / 2.0 - rest, "m", draft, 1e-3, SOURCE),
-        near("heave period", period(block(p, draft + small, 0.0), lambda a: a.table().position[0, 2] - level, heave,
-                                    count), "s", heave, 0.01, SOURCE),
-        near("pitch period", period(block(p, draft, 0.0, small / p["length"]), lambda a: a.table().angle[0], pitch,
-                                    count), "s", pitch, 0.01, SOURCE)])
+    return CaseResult(
+        "float",
+        p,
+        [
+            near("draft at rest", p["h"] / 2.0 - rest, "m", draft, 1e-3, SOURCE),
+            near(
+                "heave period",
+                period(block(p, draft + small, 0.0), lambda a: a.table().position[0, 2] - level, heave, count),
+                "s",
+                heave,
+                0.01,
+                SOURCE,
+            ),
+            near(
+                "pitch period",
+                period(block(p, draft, 0.0, small / p["length"]), lambda a: a.table().angle[0], pitch, count),
+                "s",
+                pitch,
+                0.01,
+                SOURCE,
+            ),
+        ],
+    )

@@ -17,8 +17,15 @@ from cosim.verify.settings import meshes
 from lattice import continuum, spectrum
 from lattice.grid import Array
 
-PARAMETERS: dict[str, Any] = {**TABLE_2_1, "nodes": [[19, 31], [31, 51], [61, 101]], "load": [20.0, 50.0],
-                              "c": [0.02, 0.2, 2.0], "alpha": [1e-3, 1e-2, 1e-1], "f_max": 10.0, "points": 200}
+PARAMETERS: dict[str, Any] = {
+    **TABLE_2_1,
+    "nodes": [[19, 31], [31, 51], [61, 101]],
+    "load": [20.0, 50.0],
+    "c": [0.02, 0.2, 2.0],
+    "alpha": [1e-3, 1e-2, 1e-1],
+    "f_max": 10.0,
+    "points": 200,
+}
 SOURCE = "Navier solution, van Vliet (2018), Appendix 1"
 
 
@@ -49,8 +56,11 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     mesh = meshes(p["nodes"])
     standard = p == {**PARAMETERS, "points": p["points"], "f_max": p["f_max"]}
     f = np.linspace(0.05, p["f_max"], 40 if quick else int(p["points"]))
-    quantities = [_low_frequency(p, mesh[0], standard), _resonances(p, mesh[0], standard),
-                  *_damped(p, mesh[0], standard)]
+    quantities = [
+        _low_frequency(p, mesh[0], standard),
+        _resonances(p, mesh[0], standard),
+        *_damped(p, mesh[0], standard),
+    ]
     if len(mesh) > 1:
         quantities += _order(p, [mesh[0], mesh[-1]], standard)
     curves = _curves(p, mesh[:2], f)
@@ -79,9 +89,11 @@ def _damped(p: dict[str, Any], nodes: tuple[int, int], check: bool) -> list[Quan
     f, c = np.linspace(0.05, 3.0, 60), max(p["c"])
     ours, exact = np.abs(lattice_curve(p, nodes, f, c)), np.abs(navier_curve(p, f, c))
     name = f"c = {c:g} sqrt(k_s rho h) up to 3 Hz, largest error of"
-    errors = {f"{name} w": float(np.abs(ours / exact - 1.0)[:, 0].max()),
-              f"{name} w, part of static": float(np.abs(ours - exact)[:, 0].max()),
-              f"{name} phi_x, part of static": float(np.abs(ours - exact)[:, 1].max())}
+    errors = {
+        f"{name} w": float(np.abs(ours / exact - 1.0)[:, 0].max()),
+        f"{name} w, part of static": float(np.abs(ours - exact)[:, 0].max()),
+        f"{name} phi_x, part of static": float(np.abs(ours - exact)[:, 1].max()),
+    }
     return [limited(n, e, "-", 0.02, SOURCE, check) for n, e in errors.items()]
 
 
@@ -115,15 +127,23 @@ def _curves(p: dict[str, Any], mesh: list[tuple[int, int]], f: Array) -> dict[st
 
 
 def _figures(f: Array, curves: dict[str, Array]) -> list[Figure]:
-    groups = {"mesh": [n for n in curves if "=" not in n], "hydrodynamic damping": [n for n in curves if " c=" in n],
-              "material damping": [n for n in curves if "alpha" in n]}
+    groups = {
+        "mesh": [n for n in curves if "=" not in n],
+        "hydrodynamic damping": [n for n in curves if " c=" in n],
+        "material damping": [n for n in curves if "alpha" in n],
+    }
     numbers = {"mesh": ("2-16", "2-17"), "hydrodynamic damping": ("2-19", "2-20"), "material damping": ("2-21", "2-22")}
     figures = []
     for group, names in groups.items():
         for component, label in enumerate(("deflection", "rotation phi_x")):
             number = numbers[group][component]
-            figures.append(Figure(f"figure_{number}", f"Figure {number}: {label} at the load, {group} varied",
-                                  _draw(f, {n: np.abs(curves[n][:, component]) for n in names}, label)))
+            figures.append(
+                Figure(
+                    f"figure_{number}",
+                    f"Figure {number}: {label} at the load, {group} varied",
+                    _draw(f, {n: np.abs(curves[n][:, component]) for n in names}, label),
+                )
+            )
     return figures
 
 
@@ -136,4 +156,5 @@ def _draw(f: Array, lines: dict[str, Array], label: str) -> Any:
             axes.plot(f, amplitude, "-" if exact else ":", color=colour, linewidth=1.0 if exact else 1.8, label=name)
         axes.set(xlabel="frequency of the load [Hz]", ylabel=f"{label} / static [-]", yscale="log", xlim=(0, f[-1]))
         axes.legend(fontsize=8)
+
     return draw

@@ -18,8 +18,19 @@ from lattice.limits import Strength, bending_top
 from lattice.motion import MovingPiece
 from lattice.specimens import cantilever
 
-PARAMETERS: dict[str, Any] = {"lambda": 36.0, "L_b": 4.04, "w": 0.67, "h": 0.44, "E": 2.3e9, "nu": 1.0 / 3.0,
-                              "rate": 2714.0, "sigma_f": 0.355e6, "cells": 4, "time": 0.8, "steps": 10000}
+PARAMETERS: dict[str, Any] = {
+    "lambda": 36.0,
+    "L_b": 4.04,
+    "w": 0.67,
+    "h": 0.44,
+    "E": 2.3e9,
+    "nu": 1.0 / 3.0,
+    "rate": 2714.0,
+    "sigma_f": 0.355e6,
+    "cells": 4,
+    "time": 0.8,
+    "steps": 10000,
+}
 LOOKS = 80
 SOURCE = "van Vliet (2018), Appendix 4, Table A4-1"
 
@@ -27,8 +38,16 @@ SOURCE = "van Vliet (2018), Appendix 4, Table A4-1"
 def simulate(p: dict[str, Any], scale: float) -> tuple[Array, Array, Array]:
     """w/scale, phi (times, nodes, 3), utilisation at the root (times, cells) and cell failures at t / sqrt(scale)."""
     s = scale
-    ice = Ice(E=p["E"] * s, nu=p["nu"], h=p["h"] * s, rho_i=920.0, rho_w=1025.0, sigma_f=p["sigma_f"] * s,
-              sigma_t=p["sigma_f"] * s, sigma_c=5.0 * p["sigma_f"] * s)
+    ice = Ice(
+        E=p["E"] * s,
+        nu=p["nu"],
+        h=p["h"] * s,
+        rho_i=920.0,
+        rho_w=1025.0,
+        sigma_f=p["sigma_f"] * s,
+        sigma_t=p["sigma_f"] * s,
+        sigma_c=5.0 * p["sigma_f"] * s,
+    )
     piece = cantilever(ice, p["L_b"] * s, p["w"] * s, int(p["cells"]))
     dt = p["time"] / p["steps"] * np.sqrt(s)
     moving = MovingPiece(piece, c=hydrodynamic_damping(ice, 0.1), dt=float(dt))

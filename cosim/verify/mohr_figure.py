@@ -29,6 +29,7 @@ def compressive_limit(ice: Ice, mean: Array) -> Array:
 
 def mohr_figure(floe: str, number: str, record: Record) -> Figure:
     """Blue: top, grey: bottom, orange: failing, as in the thesis."""
+
     def draw(figure: Any) -> None:
         axes = figure.subplots()
         span = 1.2 * record.ice.sigma_t / 1e6
@@ -37,6 +38,7 @@ def mohr_figure(floe: str, number: str, record: Record) -> Figure:
         axes.set(xlabel="mean x E [MPa]", ylabel="radius x E [MPa]", xlim=(-span, span), ylim=(0.0, 1.3 * span))
         axes.set_aspect("equal")
         figure.legend(loc="outside right center", frameon=False)
+
     return Figure(f"figure_{number}", f"Figure {number}: strain of all cells up to the failure, {floe}", draw)
 
 
@@ -56,8 +58,9 @@ def _lines(axes: Any, record: Record, span: float) -> None:
     ice, mean = record.ice, np.linspace(-2.0 * span, 2.0 * span, 2)
     axes.plot(mean, envelope(ice, mean * 1e6, ice.sigma_t) / 1e6, "k--", label="envelope (4.6), (6.1)")
     for limit in sorted({f.limit for f in record.failures} - {ice.sigma_t}):
-        axes.plot(mean, envelope(ice, mean * 1e6, limit) / 1e6, "--", color=FAILING, lw=1.0,
-                  label="beside a crack tip (4.31)")
+        axes.plot(
+            mean, envelope(ice, mean * 1e6, limit) / 1e6, "--", color=FAILING, lw=1.0, label="beside a crack tip (4.31)"
+        )
     axes.plot(mean, compressive_limit(ice, mean * 1e6) / 1e6, "k:", label="compressive limit (4.5)")
     slope, end = (1.0 + ice.nu) / (1.0 - ice.nu), 0.6 * span
     for side, name, place in ((1.0, "$\\sigma_{22} = 0$", "left"), (-1.0, "$\\sigma_{11} = 0$", "right")):

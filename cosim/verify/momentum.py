@@ -12,8 +12,16 @@ from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 
-PARAMETERS: dict[str, Any] = {"e": 0.3, "mu": 0.2, "rho_i": 846.0, "rho_w": 1006.0, "v": 2.0, "turned": 30.0,
-                              "offset": 0.4, "substeps": 10000}
+PARAMETERS: dict[str, Any] = {
+    "e": 0.3,
+    "mu": 0.2,
+    "rho_i": 846.0,
+    "rho_w": 1006.0,
+    "v": 2.0,
+    "turned": 30.0,
+    "offset": 0.4,
+    "substeps": 10000,
+}
 SOURCE = "Newton's impact law with Coulomb friction for two rigid bodies"
 A, B = (2.0, 2.0), (3.0, 4.0)  #: extents of the two blocks [m]
 
@@ -25,14 +33,33 @@ def box(size: tuple[float, float]) -> Array:
 
 def collide(p: dict[str, Any], turned: float, offset: float) -> tuple[Array, Array, Array]:
     """Velocities (2, 3) x, z, omega before and after an impact in air, and lever arms (2, 2) of the contact."""
-    physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], g=0.0, restitution=p["e"], mu_ice_ice=p["mu"],
-                            form_drag=0.0, skin_drag=0.0, thickness=0.1, iterations=100)
+    physics = RubblePhysics(
+        rho_i=p["rho_i"],
+        rho_w=p["rho_w"],
+        g=0.0,
+        restitution=p["e"],
+        mu_ice_ice=p["mu"],
+        form_drag=0.0,
+        skin_drag=0.0,
+        thickness=0.1,
+        iterations=100,
+    )
     layer = RubbleLayer(physics, 1.0)
     corner = float(place(box(A), 0.0, 0.0, turned, 0.0, 0.0)[:, 0].max())
     for x, z, size, angle, v in ((-corner - 0.5, 100.0 + offset, A, turned, p["v"]), (B[0] / 2, 100.0, B, 0.0, 0.0)):
         middle = x * np.cos(angle) + z * np.sin(angle)
-        layer.add_block(0, place(box(size), x, z, angle, 0.0, 0.0), middle + np.array([-size[0], size[0]]) / 2,
-                        np.array([1.0]), p["rho_i"], (v, -0.3 * v if turned else 0.0), 0.0, 0.0, 0, angle)
+        layer.add_block(
+            0,
+            place(box(size), x, z, angle, 0.0, 0.0),
+            middle + np.array([-size[0], size[0]]) / 2,
+            np.array([1.0]),
+            p["rho_i"],
+            (v, -0.3 * v if turned else 0.0),
+            0.0,
+            0.0,
+            0,
+            angle,
+        )
     before = _motion(layer)
     while not layer.section(0).sums[:, 5].any():
         layer.advance(1)
@@ -49,11 +76,16 @@ def _motion(layer: RubbleLayer) -> Array:
 
 def impact(p: dict[str, Any], before: Array, r: Array, inertia: bool) -> Array:
     """Velocities after a one-point impact on a face with normal +x: e along it, friction mu against the slip that is
-    left across."""
+    left across.
+    """
     mass = p["rho_i"] * np.array([A[0] * A[1], B[0] * B[1]])
     moment = mass * np.array([A[0] ** 2 + A[1] ** 2, B[0] ** 2 + B[1] ** 2]) / 12.0
-    jacobian = np.array([[(-1.0, 0.0, r[0, 1] * inertia), (1.0, 0.0, -r[1, 1] * inertia)],
-                         [(0.0, -1.0, -r[0, 0] * inertia), (0.0, 1.0, r[1, 0] * inertia)]]).reshape(2, 6)
+    jacobian = np.array(
+        [
+            [(-1.0, 0.0, r[0, 1] * inertia), (1.0, 0.0, -r[1, 1] * inertia)],
+            [(0.0, -1.0, -r[0, 0] * inertia), (0.0, 1.0, r[1, 0] * inertia)],
+        ]
+    ).reshape(2, 6)
     m = np.array([mass[0], mass[0], moment[0], mass[1], mass[1], moment[1]])
     k, u = jacobian / m @ jacobian.T, jacobian @ before.ravel()
     j = np.linalg.solve(k, [-(1.0 + p["e"]) * u[0], -u[1]])  # the slip stops ...
@@ -66,14 +98,24 @@ def impact(p: dict[str, Any], before: Array, r: Array, inertia: bool) -> Array:
 
 def pile_balance(p: dict[str, Any], substeps: int) -> tuple[float, float]:
     """Momentum gained less impulses received over a run, and the same with the structure's impulse reversed; both as
-    part of the impulse that passed through the blocks."""
+    part of the impulse that passed through the blocks.
+    """
     physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], thickness=3.0, added_mass=0.2, restitution=p["e"])
     face = np.array([(30.0, -30.0), (-5.0, 5.0)])
     layer = RubbleLayer(physics, 3.0, solids=lambda y: convex_parts(face, back=60.0))
     for i in range(12):
         x, z = -4.0 - 5.0 * (i % 4), -4.0 - 4.0 * (i // 4)
-        layer.add_block(0, place(box((4.0, 2.5)), x, z, 0.0, 0.0, 0.0), np.array([x - 2.0, x + 2.0]), np.array([3.0]),
-                        p["rho_i"], (1.0, 0.2 * (-1) ** i), 0.0, 0.0, 0)
+        layer.add_block(
+            0,
+            place(box((4.0, 2.5)), x, z, 0.0, 0.0, 0.0),
+            np.array([x - 2.0, x + 2.0]),
+            np.array([3.0]),
+            p["rho_i"],
+            (1.0, 0.2 * (-1) ** i),
+            0.0,
+            0.0,
+            0,
+        )
     own, structure, scale = layer.section(0), np.zeros(2), 0.0
     start = _carried(layer)
     for _ in range(substeps // 10):
@@ -98,9 +140,22 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     before, after, arms = collide(p, np.radians(p["turned"]), p["offset"])
     exact = impact(p, before, arms, True)
     balance, reversed_balance = pile_balance(p, 1000 if quick else int(p["substeps"]))
-    return CaseResult("momentum", p, [
-        near("head-on: velocities along x after the impact", head_after[:, 0], "m/s", straight[:, 0], 1e-3, SOURCE),
-        near("oblique: velocities x, z, omega after the impact", after, "m/s, rad/s", exact, 1e-3, SOURCE),
-        at_most("pile: momentum gained less impulses, part of the impulses", balance, "-", 1e-9, "Newton's second law"),
-        near("the same with the structure's impulse reversed is refused (1 = yes)", float(reversed_balance > 1e-3), "-",
-             1.0, 0.0, "a wrong sign must be found")])
+    return CaseResult(
+        "momentum",
+        p,
+        [
+            near("head-on: velocities along x after the impact", head_after[:, 0], "m/s", straight[:, 0], 1e-3, SOURCE),
+            near("oblique: velocities x, z, omega after the impact", after, "m/s, rad/s", exact, 1e-3, SOURCE),
+            at_most(
+                "pile: momentum gained less impulses, part of the impulses", balance, "-", 1e-9, "Newton's second law"
+            ),
+            near(
+                "the same with the structure's impulse reversed is refused (1 = yes)",
+                float(reversed_balance > 1e-3),
+                "-",
+                1.0,
+                0.0,
+                "a wrong sign must be found",
+            ),
+        ],
+    )

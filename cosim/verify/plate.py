@@ -10,8 +10,17 @@ from lattice.spectrum import Plate
 from lattice.statics import all_around
 from lattice.stiffness import STIFFNESS_SETS, Springs
 
-TABLE_2_1: dict[str, Any] = {"Lx": 60.0, "Ly": 100.0, "E": 3.0e9, "nu": 0.3, "h": 1.5, "rho_i": 900.0, "rho_w": 1025.0,
-                             "g": 9.81, "stiffness": "equations-matching"}
+TABLE_2_1: dict[str, Any] = {
+    "Lx": 60.0,
+    "Ly": 100.0,
+    "E": 3.0e9,
+    "nu": 0.3,
+    "h": 1.5,
+    "rho_i": 900.0,
+    "rho_w": 1025.0,
+    "g": 9.81,
+    "stiffness": "equations-matching",
+}
 
 
 def ice_of(p: dict[str, Any]) -> Ice:
@@ -35,8 +44,10 @@ def load_node(p: dict[str, Any], grid: Grid) -> int:
     """Node at the load point p["load"] = [x, y]."""
     x, y = (round((a / grid.d), 6) for a in p["load"])
     if x != int(x) or y != int(y) or not (0 < x < grid.nx - 1 and 0 < y < grid.ny - 1):
-        raise ValueError(f"load point {p['load']} is not an inner node of the {grid.nx} x {grid.ny} mesh "
-                         f"(cell size {grid.d:g} m): choose multiples of the cell size")
+        raise ValueError(
+            f"load point {p['load']} is not an inner node of the {grid.nx} x {grid.ny} mesh "
+            f"(cell size {grid.d:g} m): choose multiples of the cell size"
+        )
     return grid.node(int(x), int(y))
 
 

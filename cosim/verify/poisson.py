@@ -22,7 +22,13 @@ from lattice.stiffness import STIFFNESS_SETS
 from lattice.unit_cell import cell_in_stress
 
 PARAMETERS: dict[str, Any] = {key: number for key, number in TABLE_2_1.items() if key != "stiffness"} | {
-    "nu": 0.15, "nu_cell": 0.25, "nodes": [19, 31], "load": [20.0, 50.0], "f_max": 10.0, "points": 200}
+    "nu": 0.15,
+    "nu_cell": 0.25,
+    "nodes": [19, 31],
+    "load": [20.0, 50.0],
+    "f_max": 10.0,
+    "points": 200,
+}
 SOURCE = "van Vliet (2018), section 3.4"
 CONTRACTION = {"equations-matching": (0.32, 0.01), "hrennikoff": (0.25, 0.005)}  #: at nu = 1/4, and tolerance
 
@@ -53,13 +59,30 @@ def _cells(p: dict[str, Any]) -> list[Quantity]:
         reference, tolerance = CONTRACTION[name]
         label = f"contraction over elongation at nu = {p['nu_cell']:g}, {name}"
         known = p["nu_cell"] == PARAMETERS["nu_cell"]
-        out.append(near(label, contraction(ice, name), "-", reference if known else None, tolerance,
-                        f"{SOURCE}, two decimals", "absolute"))
+        out.append(
+            near(
+                label,
+                contraction(ice, name),
+                "-",
+                reference if known else None,
+                tolerance,
+                f"{SOURCE}, two decimals",
+                "absolute",
+            )
+        )
         third = contraction(replace(ice, nu=1.0 / 3.0), name)
         out.append(near(f"contraction over elongation at nu = 1/3, {name}", third, "-", 1.0 / 3.0, 1e-10, SOURCE))
     zero = contraction(replace(ice, nu=0.0), "hrennikoff")
-    out.append(near("equations-matching: contraction over elongation, closed form (1 + nu) / 4",
-                    contraction(ice, "equations-matching"), "-", 0.25 * (1.0 + p["nu_cell"]), 1e-10, "(3.8)-(3.11)"))
+    out.append(
+        near(
+            "equations-matching: contraction over elongation, closed form (1 + nu) / 4",
+            contraction(ice, "equations-matching"),
+            "-",
+            0.25 * (1.0 + p["nu_cell"]),
+            1e-10,
+            "(3.8)-(3.11)",
+        )
+    )
     return [*out, at_most("contraction over elongation at nu = 0, hrennikoff", zero, "-", 1e-12, SOURCE)]
 
 
@@ -92,5 +115,6 @@ def _figure(f: Array, curves: dict[str, Array], component: int) -> Figure:
             axes.plot(f, np.abs(curve[:, component]), style, color="k" if style == "-" else None, label=name)
         axes.set(xlabel="frequency of the load [Hz]", ylabel=f"{label} / static [-]", yscale="log", xlim=(0, f[-1]))
         axes.legend(fontsize=8)
+
     number = f"3-{3 + component}"
     return Figure(f"figure_{number}", f"Figure {number}: {label} at the load, both stiffness sets", draw)

@@ -39,8 +39,10 @@ def merged(case: str, defaults: Mapping[str, Any], changes: Mapping[str, Any]) -
             hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(defaults)}"
             raise ValueError(f"{case} has no parameter {key}: {hint}")
         if not _fits(new, defaults[key]):
-            raise ValueError(f"{case}: {key} = {json.dumps(new)} must be a {_kind(defaults[key])}, "
-                             f"for example {json.dumps(defaults[key])}")
+            raise ValueError(
+                f"{case}: {key} = {json.dumps(new)} must be a {_kind(defaults[key])}, "
+                f"for example {json.dumps(defaults[key])}"
+            )
     return {**defaults, **changes}
 
 

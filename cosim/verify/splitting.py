@@ -18,8 +18,17 @@ from lattice.ice import Ice
 from lattice.limits import Strength, crack_tip_splitting
 from lattice.specimens import EdgeCrack
 
-PARAMETERS: dict[str, Any] = {"L": 30.0, "h": 1.8, "a": 9.0, "rate": 303.0, "E": 8.7e9, "nu": 1.0 / 3.0,
-                              "K_IC": 238.0e3, "ratio": 5.0, "cells": 60}
+PARAMETERS: dict[str, Any] = {
+    "L": 30.0,
+    "h": 1.8,
+    "a": 9.0,
+    "rate": 303.0,
+    "E": 8.7e9,
+    "nu": 1.0 / 3.0,
+    "K_IC": 238.0e3,
+    "ratio": 5.0,
+    "cells": 60,
+}
 RATIOS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
 SOURCE = "van Vliet (2018), section 4.2.1"
 
@@ -49,8 +58,10 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     normalised, more = _normalised(p, cells, quick)
     quantities += more
     history = _history(p, cells, cut, force)
-    quantities += [value("time of Figure 4-14", history[:, 0], "s"),
-                   value("CMOD, COD, CTOD of Figure 4-14", history[:, 1:].T, "m")]
+    quantities += [
+        value("time of Figure 4-14", history[:, 0], "s"),
+        value("CMOD, COD, CTOD of Figure 4-14", history[:, 1:].T, "m"),
+    ]
     return CaseResult("splitting", p, quantities, [_figure_13(normalised, cells), _figure_14(history)])
 
 
@@ -61,18 +72,24 @@ def _resolute(p: dict[str, Any], force: float, opening: Array, cut: int, known: 
     def check(name: str, number: float, unit: str, reference: float, tolerance: float) -> Quantity:
         return near(name, number, unit, reference if known else None, tolerance, SOURCE)
 
-    return [check("start of the crack", start, "s", 1186.0, 0.005), value("force at the start", force, "N"),
-            check("CMOD at the start", mouth, "m", 722e-6, 0.05), value("COD at the start", middle, "m"),
-            check("CTOD at the start", tip, "m", 19e-6, 0.05),
-            check("CMOD with E = 5 GPa", mouth * soft, "m", 1255e-6, 0.05),
-            check("CTOD with E = 5 GPa", tip * soft, "m", 33e-6, 0.05)]
+    return [
+        check("start of the crack", start, "s", 1186.0, 0.005),
+        value("force at the start", force, "N"),
+        check("CMOD at the start", mouth, "m", 722e-6, 0.05),
+        value("COD at the start", middle, "m"),
+        check("CTOD at the start", tip, "m", 19e-6, 0.05),
+        check("CMOD with E = 5 GPa", mouth * soft, "m", 1255e-6, 0.05),
+        check("CTOD with E = 5 GPa", tip * soft, "m", 33e-6, 0.05),
+    ]
 
 
 def _normalised(p: dict[str, Any], cells: int, quick: bool) -> tuple[dict[str, Array], list[Quantity]]:
     """F / (h K_IC sqrt(L)) of (4.26) against a / L, for two cell sizes and LEFM."""
     scale = p["h"] * p["K_IC"] * np.sqrt(p["L"])
-    curves = {f"lattice, {n} cells": np.array([critical(p, n, round(r * n))[0] for r in RATIOS]) / scale
-              for n in (cells // 2, cells)}
+    curves = {
+        f"lattice, {n} cells": np.array([critical(p, n, round(r * n))[0] for r in RATIOS]) / scale
+        for n in (cells // 2, cells)
+    }
     curves["LEFM"] = normalised_load(np.array(RATIOS), 80 if quick else 120)
     fine = curves[f"lattice, {cells} cells"]
     error = fine / curves["LEFM"] - 1.0
@@ -81,10 +98,19 @@ def _normalised(p: dict[str, Any], cells: int, quick: bool) -> tuple[dict[str, A
     source = "LEFM, energy release rate of a crack without width"
     name = f"F(a/L) against LEFM, a/L = 0.2 ... 0.7, {cells} cells: relative difference"
     full = p["cells"] == PARAMETERS["cells"] and abs(p["nu"] - 1.0 / 3.0) < 1e-9
-    quantities = [value("a/L", RATIOS, "-"), *(value(f"normalised load, {n}", c, "-") for n, c in curves.items()),
-                  limited(name, error[inside], "-", 0.01, source, full),
-                  limited("rise of F with a/L beyond 0.2 (falling: the crack runs unstably)", rise, "-", 0.0,
-                          "van Vliet (2018), Figure 4-13", full)]
+    quantities = [
+        value("a/L", RATIOS, "-"),
+        *(value(f"normalised load, {n}", c, "-") for n, c in curves.items()),
+        limited(name, error[inside], "-", 0.01, source, full),
+        limited(
+            "rise of F with a/L beyond 0.2 (falling: the crack runs unstably)",
+            rise,
+            "-",
+            0.0,
+            "van Vliet (2018), Figure 4-13",
+            full,
+        ),
+    ]
     return curves, quantities
 
 
@@ -110,6 +136,7 @@ def _figure_13(curves: dict[str, Array], cells: int) -> Figure:
             axes.plot(RATIOS, curve, marker, mfc="none", label=name)
         axes.set(xlabel="a / L [-]", ylabel="F / (h K_IC sqrt(L)) [-]", ylim=(0, None))
         axes.legend()
+
     return Figure("figure_4-13", "Figure 4-13: load at which the crack runs", draw)
 
 
@@ -120,4 +147,5 @@ def _figure_14(history: Array) -> Figure:
             axes.plot(history[:, 0], 1e6 * history[:, column], label=name)
         axes.set(xlabel="time [s]", ylabel="opening [micrometre]", ylim=(0, 2500))
         axes.legend()
+
     return Figure("figure_4-14", "Figure 4-14: opening of the crack, Resolute test", draw)

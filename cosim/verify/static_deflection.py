@@ -31,8 +31,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     at_load = float(w[node] / exact[node] - 1.0)
     source = "Navier solution, van Vliet (2018), Appendix 1 and Figure 2-15"
     quantities = [
-        limited("largest difference of w beyond 2 h from the load over the largest w", error, "-", 0.01, source,
-                known),
+        limited("largest difference of w beyond 2 h from the load over the largest w", error, "-", 0.01, source, known),
         limited("difference of w at the load, part of w", at_load, "-", 0.02, source, known),
         value("deflection at the load, lattice", w[node], "m"),
         value("deflection at the load, Navier", exact[node], "m"),
@@ -53,4 +52,5 @@ def _figure(grid: Any, w: Array, exact: Array) -> Figure:
             axes = figure.add_subplot(1, 2, place, projection="3d")
             axes.plot_surface(x, y, -1e3 * field.reshape(x.shape), cmap="viridis", rstride=1, cstride=1)
             axes.set(title=name, xlabel="x [m]", ylabel="y [m]", zlabel="- w [mm]", box_aspect=(60, 100, 50))
+
     return Figure("figure_2-15", "Figure 2-15: static deflection under the point load", draw)

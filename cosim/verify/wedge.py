@@ -22,13 +22,28 @@ from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 from rubble.rig import Hinge
 
-PARAMETERS: dict[str, Any] = {"L0": [10.0, 20.0], "h": 3.0, "slope": 45.0, "mu": 0.1, "rho_i": 846.0, "rho_w": 1006.0,
-                              "g": 9.81, "angle": 90.0, "degrees": [5.0, 10.0, 20.0, 30.0, 45.0], "speed": 0.1,
-                              "strips": 40, "geometry": "plate"}
+PARAMETERS: dict[str, Any] = {
+    "L0": [10.0, 20.0],
+    "h": 3.0,
+    "slope": 45.0,
+    "mu": 0.1,
+    "rho_i": 846.0,
+    "rho_w": 1006.0,
+    "g": 9.81,
+    "angle": 90.0,
+    "degrees": [5.0, 10.0, 20.0, 30.0, 45.0],
+    "speed": 0.1,
+    "strips": 40,
+    "geometry": "plate",
+}
 SOURCE = "van Vliet (2018), (6.2)-(6.5), Figure 6-15"
 #: normal force [MN] at 5, 10, 20, 30, 45 degrees by independent integration of (6.2)-(6.5); (L0, backfill)
-TABLE = {(10.0, "none"): [0.164, 0.307, 0.557, 0.780, 1.104], (10.0, "full"): [0.164, 0.307, 0.541, 0.654, 0.775],
-         (20.0, "none"): [1.298, 2.408, 4.273, 5.868, 8.071], (20.0, "full"): [1.298, 2.324, 2.865, 2.991, 3.295]}
+TABLE = {
+    (10.0, "none"): [0.164, 0.307, 0.557, 0.780, 1.104],
+    (10.0, "full"): [0.164, 0.307, 0.541, 0.654, 0.775],
+    (20.0, "none"): [1.298, 2.408, 4.273, 5.868, 8.071],
+    (20.0, "full"): [1.298, 2.324, 2.865, 2.991, 3.295],
+}
 TIP, WINDOW = 1e-3, 10  #: thickness of the plate over L0; sub-steps of a window
 
 
@@ -62,12 +77,23 @@ def turn(p: dict[str, Any], length: float, backfill: str) -> tuple[Array, Array]
 def _rig(p: dict[str, Any], length: float, backfill: str) -> tuple[RubbleLayer, int, Hinge]:
     draft, plate = p["rho_i"] / p["rho_w"] * p["h"], p["geometry"] == "plate"
     thick = TIP * length if plate else p["h"]
-    physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"], mu_structure=p["mu"], form_drag=0.0,
-                            skin_drag=0.0, thickness=min(thick, 0.1), backfill="none" if backfill == "none" else "full",
-                            backfill_level=-2.0 * draft if plate else 0.0)
+    physics = RubblePhysics(
+        rho_i=p["rho_i"],
+        rho_w=p["rho_w"],
+        g=p["g"],
+        mu_structure=p["mu"],
+        form_drag=0.0,
+        skin_drag=0.0,
+        thickness=min(thick, 0.1),
+        backfill="none" if backfill == "none" else "full",
+        backfill_level=-2.0 * draft if plate else 0.0,
+    )
     slope = plane_slope(radians(p["slope"]), top=5.0, toe_depth=2.0 * length)
-    layer = RubbleLayer(physics, pitch=2.0 * length,
-                        solids=lambda y: convex_parts(slope.section_outline(y, slope.bottom, slope.top), back=500.0))
+    layer = RubbleLayer(
+        physics,
+        pitch=2.0 * length,
+        solids=lambda y: convex_parts(slope.section_outline(y, slope.bottom, slope.top), back=500.0),
+    )
     cot = 1.0 / tan(radians(p["slope"]))
     tip = cot * (draft - thick) - 0.01  # its upper corner just ahead of the slope
     x = np.linspace(tip - length, tip, int(p["strips"]) + 1)
@@ -89,7 +115,7 @@ def at_angles(p: dict[str, Any], phi: Array, force: Array) -> tuple[list[float],
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
     if p["geometry"] not in ("plate", "block"):
-        raise ValueError(f"wedge: geometry = {p['geometry']!r} must be \"plate\" (as the thesis) or \"block\"")
+        raise ValueError(f'wedge: geometry = {p["geometry"]!r} must be "plate" (as the thesis) or "block"')
     if not 0.0 < p["slope"] < 90.0 or min(p["degrees"]) <= 0.0 or not p["speed"] > 0.0:
         raise ValueError("wedge: slope must lie between 0 and 90 degrees, degrees and speed above 0")
     p = {**p, "speed": 2.0 * p["speed"], "strips": ceil(p["strips"] / 2)} if quick else p
@@ -100,8 +126,16 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
             curves[length, backfill] = turn(p, length, backfill)
             degrees, force = at_angles(p, *curves[length, backfill])
             quantities += _compare(p, length, backfill, degrees, np.array(force) / 1e6)
-    return CaseResult("wedge", p, quantities, [Figure("figure_6-15", "Figure 6-15: resulting force on the structure",
-                                                      lambda figure: _draw(figure, p, curves))])
+    return CaseResult(
+        "wedge",
+        p,
+        quantities,
+        [
+            Figure(
+                "figure_6-15", "Figure 6-15: resulting force on the structure", lambda figure: _draw(figure, p, curves)
+            )
+        ],
+    )
 
 
 def _compare(p: dict[str, Any], length: float, backfill: str, degrees: list[float], force: Array) -> list[Quantity]:
@@ -124,7 +158,12 @@ def _draw(figure: Any, p: dict[str, Any], curves: dict[tuple[float, str], tuple[
         grid = np.linspace(1e-3, max(phi), 60)
         exact = [formula(p, length, float(f), backfill) / 1e6 for f in grid]
         axes.plot(np.degrees(grid), exact, "--", color=line.get_color(), linewidth=2.0, alpha=0.5)
-    axes.set(xlabel="rotation [deg]", ylabel="force normal to the structure [MN]", xlim=(0.0, None), ylim=(0.0, None),
-             title="solid: section model, dashed: (6.2)-(6.5)")
+    axes.set(
+        xlabel="rotation [deg]",
+        ylabel="force normal to the structure [MN]",
+        xlim=(0.0, None),
+        ylim=(0.0, None),
+        title="solid: section model, dashed: (6.2)-(6.5)",
+    )
     axes.legend()
     axes.grid(alpha=0.3)

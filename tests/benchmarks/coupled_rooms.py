@@ -46,18 +46,39 @@ from rubble.water import apply_water
 
 #: room: doors, (where, name)
 DOORS = {
-    "lattice solve": [(Engine, "step"), (Engine, "remove"), (Sheet, "answer"), (CrackedSystem, "compliance"),
-                      (CrackedSystem, "response")],
+    "lattice solve": [
+        (Engine, "step"),
+        (Engine, "remove"),
+        (Sheet, "answer"),
+        (CrackedSystem, "compliance"),
+        (CrackedSystem, "response"),
+    ],
     "failure checks": [(Sheet, "_utilisation"), (Sheet, "_cells"), (Sheet, "_release_loose"), (Sheet, "_locate")],
-    "edge contact": [(OverlapContact, "evaluate"), (OverlapContact, "settle"), (Engine, "_contact_force"),
-                     (SheetPort, "_crush")],
+    "edge contact": [
+        (OverlapContact, "evaluate"),
+        (OverlapContact, "settle"),
+        (Engine, "_contact_force"),
+        (SheetPort, "_crush"),
+    ],
     "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_fragment"), (SheetPort, "_renew_edge")],
     "rubble": [(RubbleLayer, "advance")],
-    "exchange": [(SheetPort, "edges"), (RubblePort, "set_sheet"), (RubblePort, "advance"), (RubblePort, "load"),
-                 (RubblePort, "sections_in_use")],
-    "books": [(EnergyBooks, "book_step"), (EnergyBooks, "book_served"), (EnergyBooks, "loss_rate"),
-              (Ledger, "close_window"), (SheetPort, "_crushed_edge"), (lattice.sheet, "between"),
-              (coupling.scheduler, "force_budget"), (rubble.layer.table, "budget")],
+    "exchange": [
+        (SheetPort, "edges"),
+        (RubblePort, "set_sheet"),
+        (RubblePort, "advance"),
+        (RubblePort, "load"),
+        (RubblePort, "sections_in_use"),
+    ],
+    "books": [
+        (EnergyBooks, "book_step"),
+        (EnergyBooks, "book_served"),
+        (EnergyBooks, "loss_rate"),
+        (Ledger, "close_window"),
+        (SheetPort, "_crushed_edge"),
+        (lattice.sheet, "between"),
+        (coupling.scheduler, "force_budget"),
+        (rubble.layer.table, "budget"),
+    ],
     "view and recording": [(SheetPort, "view"), (RubblePort, "blocks"), (Recorder, "on_frame")],
 }
 EVERY = 20  #: compiled loops from one look into them to the next
@@ -126,23 +147,44 @@ def kernels(s: Section) -> dict[str, float]:
     flooded, losses, sums, heavy, sheet = (a.copy() for a in (s._flooded, s.losses, s.sums, s.heavy, s.sheet_sums))
 
     def water(dead):
-        apply_water(s._edges, s._offset, dead, s.water, flooded, s._state, s._bodies, _BODY,
-                    s._pressure.copy(), losses)
+        apply_water(s._edges, s._offset, dead, s.water, flooded, s._state, s._bodies, _BODY, s._pressure.copy(), losses)
 
     def contacts(header):
-        accumulate(header, reader.pairs, reader.layout, s._addresses, s._slots, s._state, s._friction.structure, s.side,
-                   s._limit, sheet, sums, nodes, heavy)
+        accumulate(
+            header,
+            reader.pairs,
+            reader.layout,
+            s._addresses,
+            s._slots,
+            s._state,
+            s._friction.structure,
+            s.side,
+            s._limit,
+            sheet,
+            sums,
+            nodes,
+            heavy,
+        )
 
     none = np.zeros(3, np.int64)
-    return {"water": max(best(lambda: water(s._dead)) - best(lambda: water(s._dead[:0])), 0.0),
-            "contacts": max(best(lambda: contacts(reader.header)) - best(lambda: contacts(none)), 0.0)}
+    return {
+        "water": max(best(lambda: water(s._dead)) - best(lambda: water(s._dead[:0])), 0.0),
+        "contacts": max(best(lambda: contacts(reader.header)) - best(lambda: contacts(none)), 0.0),
+    }
 
 
 def measure(a: argparse.Namespace) -> tuple[float, float, dict[str, float], int]:
     """Wall and processor time [s], time by room [s], blocks at the end."""
-    scenario = load_scenario(a.scenario, [
-        f"sheet.nodes=[{a.nodes}, {a.nodes}]", f"scenario.duration='{a.duration} s'", f"rubble.threads={a.threads}",
-        f"rubble.initial_volume='{a.initial} m^3'", *a.overrides])
+    scenario = load_scenario(
+        a.scenario,
+        [
+            f"sheet.nodes=[{a.nodes}, {a.nodes}]",
+            f"scenario.duration='{a.duration} s'",
+            f"rubble.threads={a.threads}",
+            f"rubble.initial_volume='{a.initial} m^3'",
+            *a.overrides,
+        ],
+    )
     with threadpool_limits(1), tempfile.TemporaryDirectory() as folder:
         scheduler, recorder = build(scenario), Recorder(Path(folder) / "run.mcap")
         recorder.on_start(run_info(scenario))
@@ -178,10 +220,14 @@ def main() -> None:
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="A.B=V")
     a = parser.parse_args()
     wall, busy, rooms, blocks = measure(a)
-    print(f"165 m floe, {a.nodes} x {a.nodes} nodes, {a.initial:g} m3 of initial rubble, {blocks} blocks at the end, "
-          f"{a.threads} thread(s), load of the machine {os.getloadavg()[0]:.1f}")
-    print(f"{a.duration:g} s simulated in {wall:.1f} s: {a.duration / wall:.2f} x real time (goal: 3 on two cores); "
-          f"{busy:.1f} s of processor time, {a.duration / busy:.2f}")
+    print(
+        f"165 m floe, {a.nodes} x {a.nodes} nodes, {a.initial:g} m3 of initial rubble, {blocks} blocks at the end, "
+        f"{a.threads} thread(s), load of the machine {os.getloadavg()[0]:.1f}"
+    )
+    print(
+        f"{a.duration:g} s simulated in {wall:.1f} s: {a.duration / wall:.2f} x real time (goal: 3 on two cores); "
+        f"{busy:.1f} s of processor time, {a.duration / busy:.2f}"
+    )
     for room, spent in sorted(rooms.items(), key=lambda item: -item[1]):
         print(f"  {room:26s} {spent:7.2f} s {spent / wall:6.1%}")
 

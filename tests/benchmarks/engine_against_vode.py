@@ -39,8 +39,12 @@ from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
 
 FLOE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_165m"
 RTOL, ATOL = 1e-8, 1e-10
-WINDOWS = {"slow loading, little contact": (3.0, 0.5), "slow loading": (9.0, 0.5),
-           "to the first failure": (13.30, 0.2), "to the circumferential failure": (25.50, 0.2)}  #: start, longest [s]
+WINDOWS = {
+    "slow loading, little contact": (3.0, 0.5),
+    "slow loading": (9.0, 0.5),
+    "to the first failure": (13.30, 0.2),
+    "to the circumferential failure": (25.50, 0.2),
+}  #: start, longest [s]
 OUTPUT = 0.005  #: interval at which the load and the utilisation are read off VODE [s]
 
 
@@ -105,15 +109,25 @@ class Floe:
         sheet, e, c = port.sheet, port.sheet.engine, port.contact
         nodes, self.grid, self.ice, self.alpha = sheet.grid.cell_nodes, sheet.grid, sheet.ice, e.alpha
         self.live, self.limits = sheet.live_cells.copy(), tensile_limits(sheet.grid, sheet.live_cells, sheet.ice)
-        self.springs = [((nodes[:, :, None] * 5 + part).reshape(len(nodes), -1), *sparse_rows(rows))
-                        for part, rows in ((np.arange(2), e.rows_u), (np.arange(2, 5), e.rows_q))]
+        self.springs = [
+            ((nodes[:, :, None] * 5 + part).reshape(len(nodes), -1), *sparse_rows(rows))
+            for part, rows in ((np.arange(2), e.rows_u), (np.arange(2, 5), e.rows_q))
+        ]
         self.k_f, self.c = node_by_node(0.0 * e.M_u, e.k_f), node_by_node(0.0 * e.M_u, e.C_q)
         held = np.broadcast_to(sheet.held[:, None], (sheet.grid.nodes, 2)).astype(float)
         self.kick = node_by_node((1.0 - held.ravel()) / e.M_u, 1.0 / e.M_q)
         self.contact, self.calls = c, 0
         law = np.array([c._law.strength, c._law.friction, c._h, c._v, c.face])
-        self.touch = (c.nodes.copy(), c._x.copy(), c._sample_y.copy(), c._width.copy(), c._z,
-                      np.array(c._s.z), np.array(c._s.r), law)
+        self.touch = (
+            c.nodes.copy(),
+            c._x.copy(),
+            c._sample_y.copy(),
+            c._width.copy(),
+            c._z,
+            np.array(c._s.z),
+            np.array(c._s.r),
+            law,
+        )
         s = sheet.state
         self.start = np.hstack((s.u, s.q, s.u_dot, s.q_dot)).ravel()
 
@@ -141,8 +155,9 @@ class Floe:
     def utilisation(self, y):
         """Largest of the live cells."""
         x = self.parts(y)[0].reshape(-1, 5)
-        strains = cell_strains(self.grid.cell_nodes, self.grid.d, np.ascontiguousarray(x[:, :2]),
-                               np.ascontiguousarray(x[:, 2:]))
+        strains = cell_strains(
+            self.grid.cell_nodes, self.grid.d, np.ascontiguousarray(x[:, :2]), np.ascontiguousarray(x[:, 2:])
+        )
         return float((combined_utilisation(strains, self.limits, self.ice) * self.live).max())
 
 
@@ -200,8 +215,11 @@ def report(name, method, floe, loads, failures, budget):
     kind = "cell_failure" if "first" in name else "circumferential"
     reference = failures[kind] if "failure" in name else (np.nan, np.nan)
     note = "" if fine else ", VODE gave up"
-    print(f"| {name} | {method} | {done:.3f} | {cpu:.1f} | {floe.calls} | {off:.1e} | {t:.4f} / {reference[0]:.4f} "
-          f"| {fx / 1e6:.4f} / {reference[1] / 1e6:.4f}{note} |", flush=True)
+    print(
+        f"| {name} | {method} | {done:.3f} | {cpu:.1f} | {floe.calls} | {off:.1e} | {t:.4f} / {reference[0]:.4f} "
+        f"| {fx / 1e6:.4f} / {reference[1] / 1e6:.4f}{note} |",
+        flush=True,
+    )
     if np.isfinite(fx):
         assert abs(fx / reference[1] - 1.0) < 0.01, "failure loads differ by more than 1 %"
     return cpu / done if done > 0.0 else np.inf
@@ -219,15 +237,20 @@ def main() -> None:
         end = failures["circumferential"][0]
         print(f"165 m floe, 60 x 60 nodes, to the circumferential failure. {machine()}\n")
         print(f"This engine: {end:.2f} s in {cpu:.2f} s\n")
-        print("| window | VODE | simulated [s] | processor [s] | right-hand sides | load off by "
-              "| failure at, VODE / here [s] | Fx then, VODE / here [MN] |\n|---|---|---|---|---|---|---|---|")
+        print(
+            "| window | VODE | simulated [s] | processor [s] | right-hand sides | load off by "
+            "| failure at, VODE / here [s] | Fx then, VODE / here [MN] |\n|---|---|---|---|---|---|---|---|"
+        )
         for method in options.methods:
-            pace = {name: report(name, method, floes[WINDOWS[name][0]], loads, failures, options.budget)
-                    for name in WINDOWS}
+            pace = {
+                name: report(name, method, floes[WINDOWS[name][0]], loads, failures, options.budget) for name in WINDOWS
+            }
             slow = [pace[name] for name in WINDOWS if "slow" in name]
-            print(f"\n{method}: {min(slow):.0f} to {max(slow):.0f} s per simulated second in slow "
-                  f"loading; extrapolated to {end:.1f} s: {min(slow) * end / 60:.1f} to {max(slow) * end / 60:.1f} "
-                  f"min, {min(slow) * end / cpu:.0f} to {max(slow) * end / cpu:.0f} times this engine\n")
+            print(
+                f"\n{method}: {min(slow):.0f} to {max(slow):.0f} s per simulated second in slow "
+                f"loading; extrapolated to {end:.1f} s: {min(slow) * end / 60:.1f} to {max(slow) * end / 60:.1f} "
+                f"min, {min(slow) * end / cpu:.0f} to {max(slow) * end / cpu:.0f} times this engine\n"
+            )
 
 
 if __name__ == "__main__":

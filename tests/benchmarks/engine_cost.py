@@ -77,8 +77,15 @@ def cost(n: int) -> dict[str, float]:
         failed = [_failure(sheet, step, cell, dt) - plain for cell in crack(n)]
     assert sheet.intact.all(), "a cell has failed: the windows were not quiet"
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-    return {"nodes": n, "cells": (n - 1) ** 2, "factorisation": first - plain, "window": window, "step": plain,
-            "failed": float(np.mean(failed)), "memory": memory}
+    return {
+        "nodes": n,
+        "cells": (n - 1) ** 2,
+        "factorisation": first - plain,
+        "window": window,
+        "step": plain,
+        "failed": float(np.mean(failed)),
+        "memory": memory,
+    }
 
 
 def _failure(sheet, step, cell: int, dt: float) -> float:
@@ -103,9 +110,14 @@ def whole_run(task: tuple[int, float]) -> dict[str, float]:
         while scheduler.t_ns < SIMULATED * 1e9 and time.perf_counter() - wall < limit:
             frame = scheduler.macro_step()
             first = first or next((e for e in frame.events if e.kind == "circumferential"), None)
-    return {"nodes": n, "simulated": scheduler.t_ns / 1e9, "wall": time.perf_counter() - wall,
-            "cpu": time.process_time() - cpu, "failed": int((~scheduler.sheet.sheet.intact).sum()),
-            "load": first.force[0] / 1e6 if first else float("nan")}
+    return {
+        "nodes": n,
+        "simulated": scheduler.t_ns / 1e9,
+        "wall": time.perf_counter() - wall,
+        "cpu": time.process_time() - cpu,
+        "failed": int((~scheduler.sheet.sheet.intact).sum()),
+        "load": first.force[0] / 1e6 if first else float("nan"),
+    }
 
 
 def machine() -> str:
@@ -133,14 +145,20 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|")
     for n in options.sizes:
         r = apart(cost, n)
-        print(f"| {n} x {n} | {r['cells']} | {1e3 * r['factorisation']:.0f} | {1e3 * r['window']:.1f} "
-              f"| {1e3 * r['step']:.1f} | {1e3 * r['failed']:.1f} | {r['memory']:.0f} |", flush=True)
+        print(
+            f"| {n} x {n} | {r['cells']} | {1e3 * r['factorisation']:.0f} | {1e3 * r['window']:.1f} "
+            f"| {1e3 * r['step']:.1f} | {1e3 * r['failed']:.1f} | {r['memory']:.0f} |",
+            flush=True,
+        )
     print("\n| nodes | simulated [s] | wall [s] | processor [s] | failed cells | Fx at circumferential failure [MN] |")
     print("|---|---|---|---|---|---|")
     for n in options.runs:
         r = apart(whole_run, (n, options.limit))
-        print(f"| {n} x {n} | {r['simulated']:.1f} | {r['wall']:.1f} | {r['cpu']:.1f} | {r['failed']} "
-              f"| {r['load']:.2f} |", flush=True)
+        print(
+            f"| {n} x {n} | {r['simulated']:.1f} | {r['wall']:.1f} | {r['cpu']:.1f} | {r['failed']} "
+            f"| {r['load']:.2f} |",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

@@ -95,8 +95,16 @@ def arithmetic(fused: bool) -> float:
 
 def engine(n: int) -> ExplicitEngine:
     """A square floe in gentle motion."""
-    e = ExplicitEngine(Grid(n, n, 165.0 / 59.0), ICE, hrennikoff(ICE), 1.0, held_in_plane=np.zeros(n * n, bool),
-                       alpha=1e-3, damping=500.0, step=1e-4)
+    e = ExplicitEngine(
+        Grid(n, n, 165.0 / 59.0),
+        ICE,
+        hrennikoff(ICE),
+        1.0,
+        held_in_plane=np.zeros(n * n, bool),
+        alpha=1e-3,
+        damping=500.0,
+        step=1e-4,
+    )
     e.v[:, :n, :n] = 1e-6 * np.random.default_rng(1).standard_normal((5, n, n))
     return e
 
@@ -127,15 +135,20 @@ def rates(n: int) -> dict[str, float]:
 def main() -> None:
     fused, plain = arithmetic(True), arithmetic(False)
     print(f"arithmetic of one core: {plain / 1e9:.1f} Gflop/s, fused {fused / 1e9:.1f} Gflop/s")
-    print(f"{'nodes':>11} {'set':>8} {'triad':>10}   {'loop':6} {'node-steps':>12} {'of memory':>10} "
-          f"{'of arithmetic':>14} {'of fused':>9}")
+    print(
+        f"{'nodes':>11} {'set':>8} {'triad':>10}   {'loop':6} {'node-steps':>12} {'of memory':>10} "
+        f"{'of arithmetic':>14} {'of fused':>9}"
+    )
     for n in SIZES:
         size = working_set(engine(n))
         memory = bandwidth(size)
         for name, rate in rates(n).items():
-            print(f"{n:>5} x {n:<3} {size / 2**20:6.2f} MB {memory / 1e9:5.1f} GB/s   {name:6} {rate / 1e6:8.1f} M/s "
-                  f"{rate * BYTES[name] / memory:9.0%} {rate * FLOPS[name] / plain:13.0%} "
-                  f"{rate * FLOPS[name] / fused:9.0%}", flush=True)
+            print(
+                f"{n:>5} x {n:<3} {size / 2**20:6.2f} MB {memory / 1e9:5.1f} GB/s   {name:6} {rate / 1e6:8.1f} M/s "
+                f"{rate * BYTES[name] / memory:9.0%} {rate * FLOPS[name] / plain:13.0%} "
+                f"{rate * FLOPS[name] / fused:9.0%}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

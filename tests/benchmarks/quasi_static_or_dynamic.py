@@ -58,8 +58,9 @@ def sheet_of(scenario: Scenario, engine: str) -> Sheet:
         return sheet
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     alpha = scenario.ice.material_damping if engine == "dynamic" else 0.0
-    return ExplicitSheet(sheet.grid, ice, hrennikoff(ice), scenario.coupling.window, held=sheet.held, damping=damping,
-                         alpha=alpha)
+    return ExplicitSheet(
+        sheet.grid, ice, hrennikoff(ice), scenario.coupling.window, held=sheet.held, damping=damping, alpha=alpha
+    )
 
 
 def run(case: str, engine: str, until: float) -> Run:
@@ -112,13 +113,20 @@ def crack(out: Run) -> dict[str, float]:
     tip = np.maximum.accumulate(reach)
     gain, wait = tip[CELLS:] - tip[:-CELLS], t[CELLS:] - t[:-CELLS]
     fastest = np.max(gain[wait > 0] / wait[wait > 0], initial=0.0)
-    return {"cells": len(c), "length": g.d * (np.ptp(i) + 1), "width": g.d * (np.ptp(j) + 1),
-            "speed": tip[-1] / (t[-1] - t[0]) if t[-1] > t[0] else math.nan, "fastest": float(fastest)}
+    return {
+        "cells": len(c),
+        "length": g.d * (np.ptp(i) + 1),
+        "width": g.d * (np.ptp(j) + 1),
+        "speed": tip[-1] / (t[-1] - t[0]) if t[-1] > t[0] else math.nan,
+        "fastest": float(fastest),
+    }
 
 
 def main(cases: list[str]) -> None:
-    print(f"{'floe':16}{'propagation':22}{'first':>9}{'Fx/Fz':>11}{'cells':>6}{'extent x, y':>14}{'speed':>9}"
-          f"{'tip':>6}{'kinetic':>9}{'failed':>7}{'pieces':>7}{'wall':>7}")
+    print(
+        f"{'floe':16}{'propagation':22}{'first':>9}{'Fx/Fz':>11}{'cells':>6}{'extent x, y':>14}{'speed':>9}"
+        f"{'tip':>6}{'kinetic':>9}{'failed':>7}{'pieces':>7}{'wall':>7}"
+    )
     for case in cases:
         for engine in ("quasi-static", "dynamic", "dynamic, undamped"):
             out = run(case, engine, CASES[case])
@@ -132,9 +140,12 @@ def line(case: str, engine: str, out: Run) -> None:
         return
     k, R = crack(out), rayleigh_speed(out.sheet.ice)
     fx, fz = out.load[0] / 1e6, out.load[1] / 1e6
-    print(f"{case:16}{engine:22}{out.cells[0][0]:7.3f} s{fx:6.2f}/{fz:.2f}{k['cells']:6.0f}"
-          f"{k['length']:8.1f},{k['width']:5.1f}{k['speed']:7.0f} m/s{k['fastest'] / R:6.2f}"
-          f"{out.kinetic / out.stored:9.3f}{len(out.cells):7d}{out.sheet.parts:7d}{out.wall:6.0f} s", flush=True)
+    print(
+        f"{case:16}{engine:22}{out.cells[0][0]:7.3f} s{fx:6.2f}/{fz:.2f}{k['cells']:6.0f}"
+        f"{k['length']:8.1f},{k['width']:5.1f}{k['speed']:7.0f} m/s{k['fastest'] / R:6.2f}"
+        f"{out.kinetic / out.stored:9.3f}{len(out.cells):7d}{out.sheet.parts:7d}{out.wall:6.0f} s",
+        flush=True,
+    )
     for event in out.events:
         print(f"{'':16}{event}", flush=True)
 

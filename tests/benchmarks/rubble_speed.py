@@ -23,14 +23,25 @@ from rubble.physics import RubblePhysics
 from rubble.space import new_space
 
 SECTIONS, BLOCKS, WIDTH, SIZE = 15, 500, 5.6, (4.0, 2.0)
-PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=SIZE[1], mu_ice_ice=0.1, mu_structure=0.1,
-                        restitution=0.1, added_mass=0.2, added_inertia=0.2, contact_strength=4e6)
+PHYSICS = RubblePhysics(
+    rho_i=846.0,
+    rho_w=1006.0,
+    thickness=SIZE[1],
+    mu_ice_ice=0.1,
+    mu_structure=0.1,
+    restitution=0.1,
+    added_mass=0.2,
+    added_inertia=0.2,
+    contact_strength=4e6,
+)
 WINDOW = 10  #: sub-steps, the default coupling window of 50 ms
 #: an upturned bin with a sloping side: blocks pile up in it as between sheet and structure
-BIN = [np.array([(-14.0, -4.0), (14.0, -4.0), (14.0, -2.0), (-14.0, -2.0)]),
-       np.array([(2.0, -4.0), (12.0, -14.0), (12.0, -4.0)]),
-       np.array([(-14.0, -150.0), (-10.0, -150.0), (-10.0, -2.0), (-14.0, -2.0)]),
-       np.array([(10.0, -150.0), (14.0, -150.0), (14.0, -2.0), (10.0, -2.0)])]
+BIN = [
+    np.array([(-14.0, -4.0), (14.0, -4.0), (14.0, -2.0), (-14.0, -2.0)]),
+    np.array([(2.0, -4.0), (12.0, -14.0), (12.0, -4.0)]),
+    np.array([(-14.0, -150.0), (-10.0, -150.0), (-10.0, -2.0), (-14.0, -2.0)]),
+    np.array([(10.0, -150.0), (14.0, -150.0), (14.0, -2.0), (10.0, -2.0)]),
+]
 
 
 def outlines(section: int) -> list[tuple[np.ndarray, float]]:
@@ -47,8 +58,18 @@ def our_layer(threads: int) -> RubbleLayer:
     for key in range(SECTIONS):
         for outline, angle in outlines(key):
             middle = float(outline.mean(axis=0) @ [np.cos(angle), np.sin(angle)])
-            layer.add_block(key, outline, middle + np.array([-0.5, 0.5]) * SIZE[0], np.array([WIDTH]), 846.0,
-                            (0.0, 0.0), 0.0, layer.centre(key), 0, angle)
+            layer.add_block(
+                key,
+                outline,
+                middle + np.array([-0.5, 0.5]) * SIZE[0],
+                np.array([WIDTH]),
+                846.0,
+                (0.0, 0.0),
+                0.0,
+                layer.centre(key),
+                0,
+                angle,
+            )
     return layer
 
 
@@ -69,8 +90,9 @@ class Plain:
         for outline, angle in outlines(key):
             body = pymunk.Body(mass, mass * (SIZE[0] ** 2 + SIZE[1] ** 2) / 12.0)
             body.position, body.angle = tuple(outline.mean(axis=0).tolist()), angle
-            shape = pymunk.Poly(body, [(x * SIZE[0] / 2, z * SIZE[1] / 2) for x, z in
-                                       ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+            shape = pymunk.Poly(
+                body, [(x * SIZE[0] / 2, z * SIZE[1] / 2) for x, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            )
             shape.friction = 0.1**0.5
             space.add(body, shape)
         for shape in space.static_body.shapes:
@@ -81,6 +103,7 @@ class Plain:
         def steps(space: pymunk.Space) -> None:
             for _ in range(n):
                 space.step(PHYSICS.substep)
+
         list((self.pool.map if self.pool else map)(steps, self.spaces))
 
 
@@ -102,18 +125,29 @@ def factor(what, seconds: float) -> float:
 
 def measure(settle: float, seconds: float, repeat: int) -> dict[str, float]:
     """Best factors of layer and peer with one thread and two, and whether the bits are the same."""
-    made = {f"{name}_{threads}": settled(make, threads, settle)
-            for threads in (1, 2) for name, make in (("layer", our_layer), ("plain", Plain))}
+    made = {
+        f"{name}_{threads}": settled(make, threads, settle)
+        for threads in (1, 2)
+        for name, make in (("layer", our_layer), ("plain", Plain))
+    }
     same = made["layer_1"].table().position.tobytes() == made["layer_2"].table().position.tobytes()
     best = dict.fromkeys(made, 0.0)
     for _ in range(repeat):
         for name, what in made.items():
             best[name] = max(best[name], factor(what, seconds))
     contacts = sum(int(s._reader.header[0]) for s in made["layer_1"].sections.values())
-    pairs = sum(len(s._get_arbiters()) for s in made["plain_1"].spaces), sum(
-        len(s.space._get_arbiters()) for s in made["layer_1"].sections.values())
-    return {**best, "same_bits": float(same), "overhead": best["plain_1"] / best["layer_1"] - 1.0,
-            "contacts": contacts, "pairs_plain": pairs[0], "pairs_layer": pairs[1]}
+    pairs = (
+        sum(len(s._get_arbiters()) for s in made["plain_1"].spaces),
+        sum(len(s.space._get_arbiters()) for s in made["layer_1"].sections.values()),
+    )
+    return {
+        **best,
+        "same_bits": float(same),
+        "overhead": best["plain_1"] / best["layer_1"] - 1.0,
+        "contacts": contacts,
+        "pairs_plain": pairs[0],
+        "pairs_layer": pairs[1],
+    }
 
 
 def main() -> None:
@@ -123,12 +157,16 @@ def main() -> None:
     parser.add_argument("--repeat", type=int, default=10)
     a = parser.parse_args()
     r = measure(a.settle, a.seconds, a.repeat)
-    print(f"{BLOCKS} blocks in {SECTIONS} sections, settled for {a.settle:g} s, load of the machine "
-          f"{os.getloadavg()[0]:.1f}; {r['contacts']:.0f} contacts, pairs {r['pairs_layer']:.0f} (layer) and "
-          f"{r['pairs_plain']:.0f} (plain)")
+    print(
+        f"{BLOCKS} blocks in {SECTIONS} sections, settled for {a.settle:g} s, load of the machine "
+        f"{os.getloadavg()[0]:.1f}; {r['contacts']:.0f} contacts, pairs {r['pairs_layer']:.0f} (layer) and "
+        f"{r['pairs_plain']:.0f} (plain)"
+    )
     for threads, claim in ((1, 1.8), (2, 3.0)):
-        print(f"{threads} thread(s): layer {r[f'layer_{threads}']:.2f} x real time (claim {claim}), "
-              f"plain pymunk {r[f'plain_{threads}']:.2f}")
+        print(
+            f"{threads} thread(s): layer {r[f'layer_{threads}']:.2f} x real time (claim {claim}), "
+            f"plain pymunk {r[f'plain_{threads}']:.2f}"
+        )
     print(f"overhead on one thread {r['overhead']:.0%} (claim < 30 %), same bits {bool(r['same_bits'])}")
 
 

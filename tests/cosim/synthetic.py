@@ -31,8 +31,9 @@ def cone(radius: float = 15.0, neck: float = 9.0, top: float = 5.0, toe: float =
 
 
 def run_info(scenario: Scenario) -> RunInfo:
-    return RunInfo(scenario, cone(), tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns,
-                   scenario.window_ns)
+    return RunInfo(
+        scenario, cone(), tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns, scenario.window_ns
+    )
 
 
 def frames(scenario: Scenario) -> Iterator[Frame]:
@@ -40,23 +41,31 @@ def frames(scenario: Scenario) -> Iterator[Frame]:
     window = scenario.window_ns
     for k in range(1, scenario.duration_ns // window + 1):
         t = k * window / 1e9
-        yield Frame(k * window, sheet(scenario, t), blocks(scenario, t), load(t), tuple(events(k * window, window)),
-                    {"mass_error": 1e-12 * t, "energy_residual": 2.0 * t, "rubble_mass": 8.46e5 * max(t - 6.0, 0.0)})
+        yield Frame(
+            k * window,
+            sheet(scenario, t),
+            blocks(scenario, t),
+            load(t),
+            tuple(events(k * window, window)),
+            {"mass_error": 1e-12 * t, "energy_residual": 2.0 * t, "rubble_mass": 8.46e5 * max(t - 6.0, 0.0)},
+        )
 
 
 def load(t: float) -> np.ndarray:
     """Breaking builds up to the events and drops, rotating follows, sliding rises and swings with 2.5 s."""
     breaking = 1.35e6 * t if t <= CIRCUMFERENTIAL else 2.0e6 * (1 + math.sin(2 * math.pi * t / 2.5))
-    rotating = 4.0e6 * math.exp(-((t - 8.0) / 1.2) ** 2)
+    rotating = 4.0e6 * math.exp(-(((t - 8.0) / 1.2) ** 2))
     sliding = 3.0e6 * min(max(t - 7.0, 0.0) / 5.0, 1.0)
     direction = np.array([1.0, 0.02, 0.84])
     return np.outer([breaking, rotating, sliding], direction)
 
 
 def events(t_ns: int, window: int) -> Iterator[Event]:
-    for time, kind, cells, text in [(SPLIT, "split", 24, "the sheet falls into two parts"),
-                                    (CIRCUMFERENTIAL, "circumferential", 31, "two pieces of 14 m break off"),
-                                    (HAND_OVER, "hand_over", 0, "2 fragments become 18 blocks")]:
+    for time, kind, cells, text in [
+        (SPLIT, "split", 24, "the sheet falls into two parts"),
+        (CIRCUMFERENTIAL, "circumferential", 31, "two pieces of 14 m break off"),
+        (HAND_OVER, "hand_over", 0, "2 fragments become 18 blocks"),
+    ]:
         at = round(time * 1e9)
         if t_ns - window < at <= t_ns:
             yield Event(at, kind, tuple(load(time).sum(axis=0)), cells, (-18.0, 0.0, 0.1), text)
@@ -99,7 +108,17 @@ def blocks(scenario: Scenario, t: float) -> BlockTable:
             outline.append(turned + c)
     n = len(centre)
     zero = np.zeros((n, 3))
-    return BlockTable(np.arange(n), np.repeat(np.arange(9), 2), np.array(phase, np.int64),
-                      np.full(n, 7 * h * 5.2 * 846), np.full(n, 5.2), np.array(centre),
-                      np.array(angle), zero, np.zeros(n), zero,
-                      np.concatenate(outline), 4 * np.arange(n + 1))
+    return BlockTable(
+        np.arange(n),
+        np.repeat(np.arange(9), 2),
+        np.array(phase, np.int64),
+        np.full(n, 7 * h * 5.2 * 846),
+        np.full(n, 5.2),
+        np.array(centre),
+        np.array(angle),
+        zero,
+        np.zeros(n),
+        zero,
+        np.concatenate(outline),
+        4 * np.arange(n + 1),
+    )

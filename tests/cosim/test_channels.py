@@ -31,10 +31,13 @@ def test_triangles_are_read_back_bit_by_bit():
 def test_nested_messages_are_set_also_at_zero(scenario, synthetic):
     """rerun turns an unset nested message into a null."""
     (entity,) = SceneUpdate.FromString(channels.rubble_scene(0, BlockTable.empty())).entities
-    assert entity.HasField("timestamp") and entity.HasField("lifetime")
+    assert entity.HasField("timestamp")
+    assert entity.HasField("lifetime")
     assert all(item.HasField("pose") and item.HasField("color") for item in entity.triangles)
     cloud = PointCloud.FromString(channels.nodes(0, synthetic.sheet(scenario, 0.0)))
-    assert cloud.HasField("timestamp") and cloud.HasField("pose") and cloud.pose.HasField("position")
+    assert cloud.HasField("timestamp")
+    assert cloud.HasField("pose")
+    assert cloud.pose.HasField("position")
 
 
 def test_load_holds_totals_and_phases():
@@ -51,7 +54,8 @@ def test_an_event_is_data_and_a_line():
     (first, data), (second, line) = channels.event(item)
     message = messages.Event.FromString(data)
     assert (first, message.kind, message.fz, message.cells, message.y) == ("/events", "split", 3.0, 7, 5.0)
-    assert second == "/log" and channels.SCHEMAS["/log"].FromString(line).message == "split: two parts"
+    assert second == "/log"
+    assert channels.SCHEMAS["/log"].FromString(line).message == "split: two parts"
 
 
 def test_nodes_that_left_the_lattice_are_not_drawn(scenario, synthetic):
@@ -103,7 +107,8 @@ def test_outline_points_lie_on_the_blocks_and_are_dense(scenario, synthetic):
 
 def test_no_blocks_and_no_cells_are_pictures_too(scenario, synthetic):
     empty = BlockTable.empty()
-    assert len(shapes.prisms(empty)[0]) == 0 and channels.rubble_outline(0, empty, 0.5)
+    assert len(shapes.prisms(empty)[0]) == 0
+    assert channels.rubble_outline(0, empty, 0.5)
     vertices, faces, _ = shapes.solid_sheet(np.zeros((9, 3)), np.empty((0, 4), np.int64), 3.0)
     assert (len(vertices), len(faces)) == (18, 0)
     gone = pictures.sheet_quads(scenes.scene(0, "sheet", [scenes.triangle_list(vertices, faces, np.zeros((18, 3)))]))
@@ -112,4 +117,6 @@ def test_no_blocks_and_no_cells_are_pictures_too(scenario, synthetic):
 
 def test_colours_go_from_ice_to_red():
     low, high, cracked = shapes.ice_colour(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
-    assert low[2] > low[0] and high[0] > 4 * high[2] and cracked.sum() < low.sum() / 3
+    assert low[2] > low[0]
+    assert high[0] > 4 * high[2]
+    assert cracked.sum() < low.sum() / 3

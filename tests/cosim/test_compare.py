@@ -43,8 +43,10 @@ def test_missing_features_are_none(run):
 
 def test_an_empty_run_has_no_features():
     empty = RunData("x", {"window_ns": "1"}, np.empty(0, int), np.empty((0, 3, 3)))
-    assert features.peak_load(empty) is None and features.peak_time(empty) is None
-    assert features.first_contact(empty) is None and features.peaks(empty)["fx"]["value"] is None
+    assert features.peak_load(empty) is None
+    assert features.peak_time(empty) is None
+    assert features.first_contact(empty) is None
+    assert features.peaks(empty)["fx"]["value"] is None
 
 
 def test_times_count_from_first_contact():
@@ -96,10 +98,17 @@ def test_build_up_and_rubble(run):
     assert features.rubble_volume(run) == pytest.approx(8.46e5 * 6 / 846, rel=1e-12)
 
 
-@pytest.mark.parametrize(("simulated", "value", "expected"), [
-    (5.0, (10.0, 10.0), 0.5), (5.0, (4.0, 6.0), 1.0), (3.0, (4.0, 6.0), 0.75), (9.0, (4.0, 6.0), 1.5),
-    (None, (4.0, 6.0), None), (3.0, None, None),
-])
+@pytest.mark.parametrize(
+    ("simulated", "value", "expected"),
+    [
+        (5.0, (10.0, 10.0), 0.5),
+        (5.0, (4.0, 6.0), 1.0),
+        (3.0, (4.0, 6.0), 0.75),
+        (9.0, (4.0, 6.0), 1.5),
+        (None, (4.0, 6.0), None),
+        (3.0, None, None),
+    ],
+)
 def test_ratio(simulated, value, expected):
     assert compare.ratio(simulated, value) == expected
 
@@ -107,10 +116,12 @@ def test_ratio(simulated, value, expected):
 def test_json_of_a_comparison(run):
     name, reference = compare.reference_of(run, None)
     content = compare.to_json(run, name, compare.compare(run, reference))
-    assert set(content) == {"run", "reference", "features", "series", "peaks"} and content["series"] is None
+    assert set(content) == {"run", "reference", "features", "series", "peaks"}
+    assert content["series"] is None
     by_name = {f["name"]: f for f in content["features"]}
     first = by_name["circumferential_fx"]
-    assert first["measured"] == 19e6 and first["thesis"] == 5.4e6
+    assert first["measured"] == 19e6
+    assert first["thesis"] == 5.4e6
     assert first["ratio"] == pytest.approx(first["simulated"] / 19e6, rel=1e-12)
     level = by_name["level_between_peaks_fx"]
     assert (level["measured"], level["measured_range"]) == (6e6, [2e6, 10e6])
@@ -123,18 +134,26 @@ def test_shipped_references_work_on_any_run(run):
             assert compare.compare(run, load_reference(folder))
 
 
-@pytest.mark.parametrize(("change", "says"), [
-    ('quantity = "event_lod"', "use event_load"), ('quantity = "event_load"\nevnt = "split"', "use event"),
-    ('quantity = "event_load"', "event is missing"),
-    ('quantity = "peak_load"\ncomponent = "fq"', "use one of fx, fy, fz, f"),
-    ('quantity = "peak_load"\nmeasured = "3 m"', "wrong unit"), ('quantity = "peak_load"\nmeasured = 3', "unit"),
-    ('quantity = "peak_load"\nmeasured = ["1 N", "2 N", "3 N"]', "pair"), ("", "quantity is missing"),
-])
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ('quantity = "event_lod"', "use event_load"),
+        ('quantity = "event_load"\nevnt = "split"', "use event"),
+        ('quantity = "event_load"', "event is missing"),
+        ('quantity = "peak_load"\ncomponent = "fq"', "use one of fx, fy, fz, f"),
+        ('quantity = "peak_load"\nmeasured = "3 m"', "wrong unit"),
+        ('quantity = "peak_load"\nmeasured = 3', "unit"),
+        ('quantity = "peak_load"\nmeasured = ["1 N", "2 N", "3 N"]', "pair"),
+        ("", "quantity is missing"),
+    ],
+)
 def test_faults_of_a_reference_are_one_line(change, says):
     text = f'[[feature]]\nname = "a"\nunit = "N"\nsource = "s"\n{change}\n'
     with pytest.raises(FeatureError) as error:
         parse_reference(text, "r.toml")
-    assert says in str(error.value) and "\n" not in str(error.value) and str(error.value).startswith("r.toml: ")
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+    assert str(error.value).startswith("r.toml: ")
 
 
 def test_a_run_without_reference_asks_for_one(run):

@@ -25,11 +25,29 @@ def saw(n=4, sliding=1e6, events=True, drop=1.0):
     load[:, 0, 0] = (5e6 + 1e6 * cycle) * (phase / PERIOD)
     load[:, 2, 0] = np.where(t > 1.0, sliding, 0.0)
     load[t <= 1.0 + 1e-9] = 0.0
-    pieces = [Event(round((1.0 + PERIOD * (k + 1)) * NS), "circumferential", (0.0, 0.0, 0.0), 3, (0.0, 0.0, 0.0), "",
-                    10.0 + k, 100.0 * (1 + k)) for k in range(n) for _ in range(2)]
+    pieces = [
+        Event(
+            round((1.0 + PERIOD * (k + 1)) * NS),
+            "circumferential",
+            (0.0, 0.0, 0.0),
+            3,
+            (0.0, 0.0, 0.0),
+            "",
+            10.0 + k,
+            100.0 * (1 + k),
+        )
+        for k in range(n)
+        for _ in range(2)
+    ]
     rubble, cleared = 3e5 * t, 1e5 * t
-    return RunData("x", {"window_ns": str(round(DT * NS))}, np.rint(t * NS).astype(int), load,
-                   tuple(pieces) if events else (), {"rubble_mass": rubble, "cleared_mass": cleared})
+    return RunData(
+        "x",
+        {"window_ns": str(round(DT * NS))},
+        np.rint(t * NS).astype(int),
+        load,
+        tuple(pieces) if events else (),
+        {"rubble_mass": rubble, "cleared_mass": cleared},
+    )
 
 
 def test_encounters_go_from_drop_to_drop():
@@ -61,13 +79,17 @@ def test_what_a_run_does_not_have_is_none():
     run, empty = saw(events=False), RunData("x", {"window_ns": "1"}, np.empty(0, int), np.empty((0, 3, 3)))
     for r in (run, empty):
         assert encounters(r) == []
-        assert cycles.encounter_load(r) is None and cycles.encounter_time(r) is None
-        assert cycles.piece_length(r) is None and cycles.piece_area(r) is None
+        assert cycles.encounter_load(r) is None
+        assert cycles.encounter_time(r) is None
+        assert cycles.piece_length(r) is None
+        assert cycles.piece_area(r) is None
         assert cycles.feed_rate(r, cycle=1) is None
         assert cycles.mean_load(r, after="split") is None
-    assert cycles.largest_load(empty) is None and cycles.cycle_period(empty) is None
+    assert cycles.largest_load(empty) is None
+    assert cycles.cycle_period(empty) is None
     assert cycles.largest_load(run, begin=100.0) is None
-    assert cycles.encounter_load(saw(), 5) is None and cycles.encounter_load(saw(), 0) is None
+    assert cycles.encounter_load(saw(), 5) is None
+    assert cycles.encounter_load(saw(), 0) is None
 
 
 def test_a_time_window_counts_from_first_contact():

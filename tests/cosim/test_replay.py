@@ -58,7 +58,7 @@ def test_picture_without_a_screen(run_file, tmp_path):
     assert near(left, shapes.STRUCTURE_RGB) > 1_500
     assert near(left, shapes.PHASE_RGB[Phase.ROTATING], 60) > 500
     assert near(left, shapes.PHASE_RGB[Phase.SLIDING], 70) > 500
-    right = image[image.shape[0] // 2:, image.shape[1] * 6 // 10:]  # Fz and events: no notices there
+    right = image[image.shape[0] // 2 :, image.shape[1] * 6 // 10 :]  # Fz and events: no notices there
     assert near(right, replay.TOTAL_RGB, 30) > 500
     assert near(right, shapes.PHASE_RGB[Phase.BREAKING]) > 100
 

@@ -14,20 +14,47 @@ from coupling.budget import TERMS
 from coupling.energy import STORES
 from coupling.interface import Event
 
-METADATA = {"scenario": "case", "title": "A <case>", "version": "1", "seed": "0", "duration_ns": "200000000",
-            "window_ns": "50000000", "overrides": "[]"}
+METADATA = {
+    "scenario": "case",
+    "title": "A <case>",
+    "version": "1",
+    "seed": "0",
+    "duration_ns": "200000000",
+    "window_ns": "50000000",
+    "overrides": "[]",
+}
 
 
 @pytest.fixture
 def run():
     load = np.zeros((4, 3, 3))
     load[:, 0, 0], load[:, 1, 0], load[:, 2, 2] = [1e6, 2e6, 6e6, 0.0], [0.0, 1e6, 2e6, 3e6], 1e6
-    names = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass", "drift_work", "energy_residual",
-             "sheet_elastic", "sheet_foundation", "sheet_kinetic", "damping_loss", "scheme_loss", "fracture_loss",
-             "contact_crushing_loss", "side_push_loss")
+    names = (
+        "sheet_mass",
+        "rubble_mass",
+        "crushed_mass",
+        "cleared_mass",
+        "drift_work",
+        "energy_residual",
+        "sheet_elastic",
+        "sheet_foundation",
+        "sheet_kinetic",
+        "damping_loss",
+        "scheme_loss",
+        "fracture_loss",
+        "contact_crushing_loss",
+        "side_push_loss",
+    )
     event = Event(120_000_000, "split", (5e6, 0.0, 4e6), 3, (0.0, 0.0, 0.0), "it splits")
-    return RunData("run.mcap", METADATA, 50_000_000 * np.arange(1, 5), load, (event,),
-                   {n: np.linspace(0.0, 1e5, 4) for n in names}, {"scenario.toml": "[scenario]"})
+    return RunData(
+        "run.mcap",
+        METADATA,
+        50_000_000 * np.arange(1, 5),
+        load,
+        (event,),
+        {n: np.linspace(0.0, 1e5, 4) for n in names},
+        {"scenario.toml": "[scenario]"},
+    )
 
 
 def test_shares_at_the_peak_add_up(run):
@@ -78,15 +105,25 @@ def test_the_page_is_self_contained(run, tmp_path):
 def test_every_term_of_the_energy_has_its_place_in_the_figure():
     """All terms that a run can have, once each: the stack then ends at the work of the drift."""
     drawn = [name for _, names in ENERGY.values() for name in names]
-    run = run_scenario(load_scenario("van_vliet_2018_floe_55m_centre",
-                                     ["sheet.nodes=[20, 20]", "scenario.duration='1 s'"]))
+    run = run_scenario(
+        load_scenario("van_vliet_2018_floe_55m_centre", ["sheet.nodes=[20, 20]", "scenario.duration='1 s'"])
+    )
     terms = {n for n in run.ledger if n in STORES or n.endswith("_loss")}
     assert set(drawn) == terms
     assert len(drawn) == len(terms)
 
 
 def test_a_run_without_energy_books_has_no_energy_figure(run):
-    without = RunData(run.name, run.metadata, run.t_ns, run.load, run.events,
-                      {k: v for k, v in run.ledger.items() if k.endswith("mass")}, run.texts)
-    assert [f["title"] for f in content(without)["figures"]] == ["Load on the structure by phase",
-                                                                 "Ice that has left the sheet"]
+    without = RunData(
+        run.name,
+        run.metadata,
+        run.t_ns,
+        run.load,
+        run.events,
+        {k: v for k, v in run.ledger.items() if k.endswith("mass")},
+        run.texts,
+    )
+    assert [f["title"] for f in content(without)["figures"]] == [
+        "Load on the structure by phase",
+        "Ice that has left the sheet",
+    ]

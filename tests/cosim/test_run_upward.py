@@ -70,8 +70,10 @@ def test_up_and_down_are_mirror_images_until_the_ice_breaks():
         options = [*STRIP, f"structure.breaking='{word}'", "rubble.enabled=false", "scenario.duration='1.5 s'"]
         found[word] = run_scenario(load_scenario(PLANE, options)).events[0]
     up, down = found["upward"], found["downward"]
-    assert up.force[0] == pytest.approx(down.force[0], rel=1e-6) and up.force[0] > 1e4
-    assert up.force[2] == pytest.approx(-down.force[2], rel=1e-6) and up.force[2] < 0.0
+    assert up.force[0] == pytest.approx(down.force[0], rel=1e-6)
+    assert up.force[0] > 1e4
+    assert up.force[2] == pytest.approx(-down.force[2], rel=1e-6)
+    assert up.force[2] < 0.0
     assert up.t_ns == pytest.approx(down.t_ns, rel=1e-6)
 
 
@@ -79,8 +81,16 @@ def test_a_strip_breaks_at_croasdales_load():
     """0.68 sigma_f (rho_w g h^5 / E)^(1/4) is the tip load of an elastic beam on water: within a tenth, and inertia."""
     from cosim.baselines.methods import design_loads
 
-    scenario = load_scenario(PLANE, [*STRIP, "rubble.enabled=false", "scenario.duration='20 s'",
-                                     "drift.velocity='20 mm/s'", "fracture.longest_step='0.2 s'"])
+    scenario = load_scenario(
+        PLANE,
+        [
+            *STRIP,
+            "rubble.enabled=false",
+            "scenario.duration='20 s'",
+            "drift.velocity='20 mm/s'",
+            "fracture.longest_step='0.2 s'",
+        ],
+    )
     event = run_scenario(scenario).events[0]
     H_B = design_loads(scenario.model)["croasdale"]["terms"]["H_B"]
     assert event.force[0] == pytest.approx(H_B, rel=0.1)
@@ -92,15 +102,20 @@ def test_a_sheet_that_leaves_the_water_is_an_event():
     assert port.draft == pytest.approx(0.5 * 916.2 / 999.8)
     port.sheet.state.q[:, 0] = 1.01 * port.draft
     (event,) = port._lifted_out(np.zeros(3))
-    assert event.kind == "out_of_water" and "draft of 0.46 m" in event.text
+    assert event.kind == "out_of_water"
+    assert "draft of 0.46 m" in event.text
     assert port._lifted_out(np.zeros(3)) == []
 
 
-@pytest.mark.parametrize(("override", "says"), [
-    ("structure.toe_depth='0.9 m'", "draft"), ("structure.breaking='sideways'", "'downward' or 'upward'"),
-    ("structure.neck_radius='3 m'", "below the waterline radius"),
-    ("rubble.initial_volume='10 m^3'", "downward-breaking"),
-])
+@pytest.mark.parametrize(
+    ("override", "says"),
+    [
+        ("structure.toe_depth='0.9 m'", "draft"),
+        ("structure.breaking='sideways'", "'downward' or 'upward'"),
+        ("structure.neck_radius='3 m'", "below the waterline radius"),
+        ("rubble.initial_volume='10 m^3'", "downward-breaking"),
+    ],
+)
 def test_faults(override, says):
     with pytest.raises(ScenarioError, match=says) as error:
         load_scenario(CONE, [override])
@@ -123,7 +138,8 @@ def test_old_files_break_downwards():
 def test_the_mesh_is_the_structure(name):
     structure = build_structure(load_scenario(name))
     points, triangles = structure_mesh(structure, 20.0)
-    assert points[:, 2].max() == structure.top and triangles.max() < len(points)
+    assert points[:, 2].max() == structure.top
+    assert triangles.max() < len(points)
     x = structure.face_x(0.0, points[:, 2])
     front = points[np.abs(points[:, 1]) < 1e-6] if structure.revolved else points
     assert np.abs(front[:, 0]).max() == pytest.approx(np.abs(x).max())
@@ -148,6 +164,7 @@ def test_sections_of_an_upward_cone_are_solid_up_to_its_shaft(y):
 def test_shipped_upward_cases_run_to_their_end(name):
     result = run_scenario(load_scenario(name))
     assert sum(e.kind == "circumferential" for e in result.events) >= 4
-    assert result.ledger["mass_error"] < 1e-12 and result.by_phase["sliding"].value[0] > 1e5
+    assert result.ledger["mass_error"] < 1e-12
+    assert result.by_phase["sliding"].value[0] > 1e5
     assert result.peaks.value[2] < 0.0 < result.peaks.value[0]
     assert result.peaks.value[0] < 2e6

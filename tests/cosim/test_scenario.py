@@ -9,8 +9,12 @@ import pytest
 from cosim.reference import load_reference
 from cosim.scenario import Scenario, ScenarioError, ScenarioModel, find_scenarios, load_scenario
 
-CASES = ["van_vliet_2018_floe_165m", "van_vliet_2018_floe_34x68m", "van_vliet_2018_floe_55m_centre",
-         "van_vliet_2018_floe_55m_corner"]
+CASES = [
+    "van_vliet_2018_floe_165m",
+    "van_vliet_2018_floe_34x68m",
+    "van_vliet_2018_floe_55m_centre",
+    "van_vliet_2018_floe_55m_corner",
+]
 UPWARD = ["icefloe_gla_upward_cone", "upward_plane"]
 FLOE = CASES[0]
 
@@ -19,57 +23,65 @@ def fault(*overrides: str) -> str:
     with pytest.raises(ScenarioError) as error:
         load_scenario(FLOE, overrides)
     text = str(error.value)
-    assert "\n" not in text and "pydantic" not in text and len(text) < 300
+    assert "\n" not in text
+    assert "pydantic" not in text
+    assert len(text) < 300
     return text
 
 
-@pytest.mark.parametrize(("override", "says"), [
-    ("ice.thickness=3", ["ice.thickness", "3", "unit", '"3 m"']),
-    ("ice.thickness=-3 m", ["ice.thickness", "-3 m", "greater than zero"]),
-    ("ice.thickness=3 kg", ["ice.thickness", "3 kg", "wrong unit", "measured in m"]),
-    ("ice.thickness=3 blub", ["ice.thickness", "unknown unit"]),
-    ("ice.thicknes='3 m'", ["ice.thicknes", "unknown key", "did you mean ice.thickness?"]),
-    ("sheet.thickness='3 m'", ["sheet.thickness", "unknown key", "did you mean ice.thickness?"]),
-    ("ice.beam_test.lenght='3 m'", ["ice.beam_test.lenght", "did you mean ice.beam_test.length?"]),
-    ("fnord.x=1", ["fnord", "unknown key"]),
-    ("ice.poisson_ratio=0.4", ["ice.poisson_ratio", "0.4", "negative stiffness: use a value in [0, 1/3]"]),
-    ("ice.poisson_ratio=-0.1", ["ice.poisson_ratio", "[0, 1/3]"]),
-    ("ice.poisson_ratio=nan", ["ice.poisson_ratio", "finite"]),
-    ("ice.poisson_ratio='0.3'", ["ice.poisson_ratio", "number"]),
-    ("sheet.nodes=[2, 2]", ["sheet.nodes", "at least 3"]),
-    ("sheet.nodes=[60]", ["sheet.nodes", "[60, 60]"]),
-    ("sheet.nodes=[60, 40]", ["sheet.nodes", "square", "[60, 60]"]),
-    ("sheet.axis_from_side=200 m", ["sheet.axis_from_side", "200 m", "0 to 165 m"]),
-    ("coupling.window=7 ms", ["coupling.window", "7 ms", "5 ms or 10 ms"]),
-    ("coupling.window=1 ms", ["coupling.window", "nearest: 5 ms"]),
-    ("scenario.duration=10.02 s", ["scenario.duration", "10 s or 10.05 s"]),
-    ("recording.every=20 ms", ["recording.every", "nearest: 50 ms"]),
-    ("coupling.longest_window=100 ms", ["coupling.longest_window", "steering"]),
-    ("coupling.tolerance=0", ["coupling.tolerance", "greater than 0"]),
-    ("coupling.max_iterations=1", ["coupling.max_iterations", "greater than or equal to 2"]),
-    ("coupling.relaxation=1.5", ["coupling.relaxation", "less than or equal to 1"]),
-    ("coupling.unconverged=ignore", ["coupling.unconverged", "stop", "count"]),
-    ("coupling.steering=wind", ["coupling.steering", "fixed", "power"]),
-    ("coupling.scheme=fancy", ["coupling.scheme", "fancy", "serial-explicit"]),
-    ("structure.neck_radius=16 m", ["structure.neck_radius", "15 m"]),
-    ("structure.kind=plane", ["structure.waterline_radius", "plane"]),
-    ("structure.slope=95 deg", ["structure.slope", "0 and 90 deg"]),
-    ("ice.density=1100 kg/m^3", ["ice.density", "sinks", "1006"]),
-    ("rubble.iterations=0", ["rubble.iterations", "greater than or equal to 1"]),
-    ("rubble.enabled=1", ["rubble.enabled", "boolean"]),
-    ("contact.friction=inf", ["contact.friction", "finite"]),
-    ("thickness=3", ["--set thickness=3", "section.key=value"]),
-])
+@pytest.mark.parametrize(
+    ("override", "says"),
+    [
+        ("ice.thickness=3", ["ice.thickness", "3", "unit", '"3 m"']),
+        ("ice.thickness=-3 m", ["ice.thickness", "-3 m", "greater than zero"]),
+        ("ice.thickness=3 kg", ["ice.thickness", "3 kg", "wrong unit", "measured in m"]),
+        ("ice.thickness=3 blub", ["ice.thickness", "unknown unit"]),
+        ("ice.thicknes='3 m'", ["ice.thicknes", "unknown key", "did you mean ice.thickness?"]),
+        ("sheet.thickness='3 m'", ["sheet.thickness", "unknown key", "did you mean ice.thickness?"]),
+        ("ice.beam_test.lenght='3 m'", ["ice.beam_test.lenght", "did you mean ice.beam_test.length?"]),
+        ("fnord.x=1", ["fnord", "unknown key"]),
+        ("ice.poisson_ratio=0.4", ["ice.poisson_ratio", "0.4", "negative stiffness: use a value in [0, 1/3]"]),
+        ("ice.poisson_ratio=-0.1", ["ice.poisson_ratio", "[0, 1/3]"]),
+        ("ice.poisson_ratio=nan", ["ice.poisson_ratio", "finite"]),
+        ("ice.poisson_ratio='0.3'", ["ice.poisson_ratio", "number"]),
+        ("sheet.nodes=[2, 2]", ["sheet.nodes", "at least 3"]),
+        ("sheet.nodes=[60]", ["sheet.nodes", "[60, 60]"]),
+        ("sheet.nodes=[60, 40]", ["sheet.nodes", "square", "[60, 60]"]),
+        ("sheet.axis_from_side=200 m", ["sheet.axis_from_side", "200 m", "0 to 165 m"]),
+        ("coupling.window=7 ms", ["coupling.window", "7 ms", "5 ms or 10 ms"]),
+        ("coupling.window=1 ms", ["coupling.window", "nearest: 5 ms"]),
+        ("scenario.duration=10.02 s", ["scenario.duration", "10 s or 10.05 s"]),
+        ("recording.every=20 ms", ["recording.every", "nearest: 50 ms"]),
+        ("coupling.longest_window=100 ms", ["coupling.longest_window", "steering"]),
+        ("coupling.tolerance=0", ["coupling.tolerance", "greater than 0"]),
+        ("coupling.max_iterations=1", ["coupling.max_iterations", "greater than or equal to 2"]),
+        ("coupling.relaxation=1.5", ["coupling.relaxation", "less than or equal to 1"]),
+        ("coupling.unconverged=ignore", ["coupling.unconverged", "stop", "count"]),
+        ("coupling.steering=wind", ["coupling.steering", "fixed", "power"]),
+        ("coupling.scheme=fancy", ["coupling.scheme", "fancy", "serial-explicit"]),
+        ("structure.neck_radius=16 m", ["structure.neck_radius", "15 m"]),
+        ("structure.kind=plane", ["structure.waterline_radius", "plane"]),
+        ("structure.slope=95 deg", ["structure.slope", "0 and 90 deg"]),
+        ("ice.density=1100 kg/m^3", ["ice.density", "sinks", "1006"]),
+        ("rubble.iterations=0", ["rubble.iterations", "greater than or equal to 1"]),
+        ("rubble.enabled=1", ["rubble.enabled", "boolean"]),
+        ("contact.friction=inf", ["contact.friction", "finite"]),
+        ("thickness=3", ["--set thickness=3", "section.key=value"]),
+    ],
+)
 def test_fault_names_key_value_and_remedy(override, says):
     text = fault(override)
     assert all(part in text for part in says), text
 
 
-@pytest.mark.parametrize(("bounds", "says"), [
-    (["coupling.shortest_window=60 ms"], ["coupling.shortest_window", "at most the first window of 50 ms"]),
-    (["coupling.longest_window=20 ms"], ["coupling.longest_window", "at least the first window of 50 ms"]),
-    (["coupling.longest_window=52 ms"], ["coupling.longest_window", "rubble sub-step 5 ms", "50 ms or 55 ms"]),
-])
+@pytest.mark.parametrize(
+    ("bounds", "says"),
+    [
+        (["coupling.shortest_window=60 ms"], ["coupling.shortest_window", "at most the first window of 50 ms"]),
+        (["coupling.longest_window=20 ms"], ["coupling.longest_window", "at least the first window of 50 ms"]),
+        (["coupling.longest_window=52 ms"], ["coupling.longest_window", "rubble sub-step 5 ms", "50 ms or 55 ms"]),
+    ],
+)
 def test_bounds_of_steered_windows(bounds, says):
     text = fault("coupling.steering=power", *bounds)
     assert all(part in text for part in says), text
@@ -116,10 +128,19 @@ def test_poisson_ratio_of_one_third_is_silent_and_less_warns():
 
 
 def test_overrides_are_toml_or_text():
-    s = load_scenario(FLOE, ["ice.thickness=2 m", 'coupling.window="20 ms"', "sheet.nodes=[40,40]",
-                             "rubble.enabled=false", "scenario.seed=7"])
+    s = load_scenario(
+        FLOE,
+        [
+            "ice.thickness=2 m",
+            'coupling.window="20 ms"',
+            "sheet.nodes=[40,40]",
+            "rubble.enabled=false",
+            "scenario.seed=7",
+        ],
+    )
     assert (s.ice.thickness, s.window_ns, s.substeps, s.seed) == (2.0, 20_000_000, 4, 7)
-    assert s.sheet.nodes == (40, 40) and s.rubble.enabled is False
+    assert s.sheet.nodes == (40, 40)
+    assert s.rubble.enabled is False
 
 
 @pytest.mark.parametrize("overrides", [(), ("ice.thickness=2 m", "rubble.substep=10 ms")])
@@ -164,10 +185,15 @@ def test_table_6_1(case):
     assert (s.window_ns, s.substeps, s.water.damping, s.sheet.back) == (50_000_000, 10, 0.1, "held")
 
 
-@pytest.mark.parametrize(("case", "length", "width", "nodes", "axis"), [
-    (CASES[0], 165.0, 165.0, (60, 60), 82.5), (CASES[1], 34.0, 68.0, (31, 61), 34.0),
-    (CASES[2], 55.0, 55.0, (40, 40), 27.5), (CASES[3], 55.0, 55.0, (40, 40), 19.0),
-])
+@pytest.mark.parametrize(
+    ("case", "length", "width", "nodes", "axis"),
+    [
+        (CASES[0], 165.0, 165.0, (60, 60), 82.5),
+        (CASES[1], 34.0, 68.0, (31, 61), 34.0),
+        (CASES[2], 55.0, 55.0, (40, 40), 27.5),
+        (CASES[3], 55.0, 55.0, (40, 40), 19.0),
+    ],
+)
 def test_floes(case, length, width, nodes, axis):
     sheet = load_scenario(case).sheet
     assert (sheet.length, sheet.width, sheet.nodes, sheet.axis) == (length, width, nodes, axis)
@@ -178,8 +204,11 @@ def test_floes(case, length, width, nodes, axis):
 def test_every_value_has_its_source_and_every_case_its_reference(case):
     s = load_scenario(case)
     for line in s.text.splitlines():
-        if "=" in line and not line.startswith("#") and line.split(" =")[0] not in ("title", "description", "scheme",
-                                                                                  "enabled"):
+        if (
+            "=" in line
+            and not line.startswith("#")
+            and line.split(" =")[0] not in ("title", "description", "scheme", "enabled")
+        ):
             assert "#" in line, line
     assert load_reference(s.folder).features
     assert 30 <= len((s.folder / "SOURCE.md").read_text().splitlines()) <= 60
@@ -192,14 +221,19 @@ def test_cases_share_a_base(tmp_path):
     case = tmp_path / "case.toml"
     case.write_text('base = "common.toml"\n[scenario]\ntitle = "a case"\n[sheet]\nnodes = [40, 40]\n')
     found = load_scenario(case)
-    assert found.title == "a case" and found.sheet.nodes == (40, 40)
-    assert found.sheet.length == 165.0 and found.ice == shared.ice and "Table 6-1" in found.text
+    assert found.title == "a case"
+    assert found.sheet.nodes == (40, 40)
+    assert found.sheet.length == 165.0
+    assert found.ice == shared.ice
+    assert "Table 6-1" in found.text
     (tmp_path / "alone.toml").write_text(found.resolved_toml())
     assert load_scenario(tmp_path / "alone.toml").model == found.model
 
 
-@pytest.mark.parametrize("line, words", [('base = "nowhere.toml"', "nowhere.toml"), ("base = 3", "base = 3"),
-                                         ('base = "case.toml"', "its own base")])
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [('base = "nowhere.toml"', "nowhere.toml"), ("base = 3", "base = 3"), ('base = "case.toml"', "its own base")],
+)
 def test_a_base_that_cannot_be_read_is_named(tmp_path, line, words):
     case = tmp_path / "case.toml"
     case.write_text(line + "\n")

@@ -38,16 +38,22 @@ def test_parameters_without_a_reference_still_give_values() -> None:
     assert len(lattice["value"]) == 20
 
 
-@pytest.mark.parametrize("arguments, text", [
-    (("nonsense",), "known cases are"), (("--set", "nu=0.2"), "--set needs a case"),
-    (("eigenfrequencies", "--set", "nuu=0.2"), "did you mean nu?"),
-    (("eigenfrequencies", "--set", "nu=0.4"), "Poisson's ratio 0.4"),
-    (("eigenfrequencies", "--set", "nu"), "write name=value"),
-    (("eigenfrequencies", "--set", "nodes=[19,30]"), "cells must be square"),
-    (("eigenfrequencies", "--set", "modes=2.5"), "whole number"), (("splitting", "--set", "E=NaN"), "must be a number"),
-    (("splitting", "--set", "a=31"), "does not end inside"), (("froude", "--set", "steps=100"), "is not stable"),
-    (("dispersion", "--set", "stiffness=foo"), "unknown stiffness set"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (("nonsense",), "known cases are"),
+        (("--set", "nu=0.2"), "--set needs a case"),
+        (("eigenfrequencies", "--set", "nuu=0.2"), "did you mean nu?"),
+        (("eigenfrequencies", "--set", "nu=0.4"), "Poisson's ratio 0.4"),
+        (("eigenfrequencies", "--set", "nu"), "write name=value"),
+        (("eigenfrequencies", "--set", "nodes=[19,30]"), "cells must be square"),
+        (("eigenfrequencies", "--set", "modes=2.5"), "whole number"),
+        (("splitting", "--set", "E=NaN"), "must be a number"),
+        (("splitting", "--set", "a=31"), "does not end inside"),
+        (("froude", "--set", "steps=100"), "is not stable"),
+        (("dispersion", "--set", "stiffness=foo"), "unknown stiffness set"),
+    ],
+)
 def test_bad_input_is_one_line_and_exit_2(arguments: tuple[str, ...], text: str) -> None:
     result = call(*arguments)
     assert result.exit_code == 2

@@ -32,8 +32,19 @@ def add(layer, x, z, angle=0.0, flooded=None):
     """A box with its middle at (x, z), its long axis at ``angle``."""
     c, s = np.cos(angle), np.sin(angle)
     middle = x * c + z * s
-    layer.add_block(0, BOX @ np.array([(c, s), (-s, c)]) + [x, z], middle + np.array([-0.5, 0.5]) * LENGTH,
-                    np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.0, 0.0, 0, angle, flooded=flooded)
+    layer.add_block(
+        0,
+        BOX @ np.array([(c, s), (-s, c)]) + [x, z],
+        middle + np.array([-0.5, 0.5]) * LENGTH,
+        np.array([WIDTH]),
+        RHO_I,
+        (0.0, 0.0),
+        0.0,
+        0.0,
+        0,
+        angle,
+        flooded=flooded,
+    )
 
 
 def budget_of(layer):
@@ -161,9 +172,11 @@ def test_every_term_of_a_coupled_run_is_at_work(short_run):
 @pytest.mark.parametrize("name", ["dry_tops", "flooded_rubble", "drag", "inertia", "staggering"])
 def test_a_twin_with_a_wrong_sign_is_rejected(name):
     """The rubble's terms one by one with the other sign: the residual shows it at once."""
+
     def turn(scheduler):
-        wrong = property(lambda self: {n: (-x, -z) if n == name else (x, z) for n, (x, z) in
-                                       RubblePort.budget.__get__(self).items()})
+        wrong = property(
+            lambda self: {n: (-x, -z) if n == name else (x, z) for n, (x, z) in RubblePort.budget.__get__(self).items()}
+        )
         scheduler.rubble.__class__ = type("Twin", (RubblePort,), {"budget": wrong})
 
     load, budgets, _ = coupled(twin=turn)

@@ -21,7 +21,7 @@ def test_crushed_area_is_the_area_of_the_cut(tan, depth):
     area = e.crushed_area(row, np.ones(NX, int))
     s = (np.arange(200000) + 0.5) * (9.0 / 200000)  # distance behind the front
     removed = np.minimum(H, np.maximum(depth - s, 0.0) * tan)
-    ends = 5 * D - np.concatenate(([0.0], np.cumsum(e.length(row)))) # place of the rows' rear and front ends
+    ends = 5 * D - np.concatenate(([0.0], np.cumsum(e.length(row))))  # place of the rows' rear and front ends
     for r in row:
         inside = (s >= ends[r + 1]) & (s < ends[r])
         assert area[r] == pytest.approx(removed[inside].sum() * 9.0 / 200000, rel=1e-3, abs=1e-4)

@@ -24,10 +24,21 @@ def fragment(rows=4, columns=3, *, turn=0.1, omega=0.05, cut=0.0, face=1.0):
     velocity = np.column_stack((0.1 - omega * position[:, 2], np.full(len(s), 0.02), omega * position[:, 0] - 0.3))
     length = np.where(row == 0, D / 2, D)
     return Fragment(
-        row=row, column=column, mass=846.0 * H * D * length, length=length, width=np.full(len(s), D),
-        lead=np.where(row == 0, 0.0, D / 2), position=position, velocity=velocity, tilt=np.full(len(s), -turn),
-        tilt_rate=np.full(len(s), -omega), cut=np.where(row == 0, cut, 0.0), cut_tan=np.ones(len(s)), cut_face=face,
-        thickness=H)
+        row=row,
+        column=column,
+        mass=846.0 * H * D * length,
+        length=length,
+        width=np.full(len(s), D),
+        lead=np.where(row == 0, 0.0, D / 2),
+        position=position,
+        velocity=velocity,
+        tilt=np.full(len(s), -turn),
+        tilt_rate=np.full(len(s), -omega),
+        cut=np.where(row == 0, cut, 0.0),
+        cut_tan=np.ones(len(s)),
+        cut_face=face,
+        thickness=H,
+    )
 
 
 def area(polygon):
@@ -88,8 +99,14 @@ def test_two_columns_in_a_section_are_one_block_with_both_widths():
 def handed_over(ahead, omega=0.05):
     """What a port says of a fragment whose front stands ``ahead`` of the middle of a slope."""
     physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, added_mass=0.2)
-    port = RubblePort(plane_slope(np.pi / 4, top=5.0, toe_depth=20.0), physics, pitch=D, origin=1.0,
-                      columns_per_section=1, domain=Domain())
+    port = RubblePort(
+        plane_slope(np.pi / 4, top=5.0, toe_depth=20.0),
+        physics,
+        pitch=D,
+        origin=1.0,
+        columns_per_section=1,
+        domain=Domain(),
+    )
     f = fragment(omega=omega)
     return port.add(replace(f, position=f.position + np.array([ahead, 0.0, 0.0])))
 

@@ -18,8 +18,19 @@ def picture(s, windows):
     for _ in range(windows):
         f = s.macro_step()
         force, table = s.rubble.forces_on_sheet(), f.blocks
-        arrays = (f.sheet.position, f.sheet.utilisation, f.sheet.intact, f.load, table.position, table.velocity,
-                  table.angle, table.load, force.nodes, force.force, np.array(list(f.ledger.values())))
+        arrays = (
+            f.sheet.position,
+            f.sheet.utilisation,
+            f.sheet.intact,
+            f.load,
+            table.position,
+            table.velocity,
+            table.angle,
+            table.load,
+            force.nodes,
+            force.force,
+            np.array(list(f.ledger.values())),
+        )
         out += [np.ascontiguousarray(a).tobytes() for a in arrays] + [repr(f.events).encode()]
     return b"".join(out)
 
@@ -41,8 +52,12 @@ def until(s, happens):
 @pytest.mark.parametrize("propagation", ["quasi-static", "dynamic"])
 def test_a_window_with_failures_and_the_next_ones_are_repeated_bit_by_bit(propagation):
     with threadpool_limits(1):
-        s = build(load_scenario("van_vliet_2018_floe_55m_centre",
-                                [*QUICK, f"fracture.propagation='{propagation}'", "rubble.enabled=false"]))
+        s = build(
+            load_scenario(
+                "van_vliet_2018_floe_55m_centre",
+                [*QUICK, f"fracture.propagation='{propagation}'", "rubble.enabled=false"],
+            )
+        )
         saved, t_ns, first = until(s, lambda s, frame, _: bool(frame.events))
         runs = []
         for _ in range(3):
@@ -60,14 +75,17 @@ def test_births_collisions_and_windows_after_them_are_repeated_bit_by_bit():
     """From the window before the first hand-over, and from one in which blocks press on sheet and structure."""
     with threadpool_limits(1):
         s = build(load_scenario("van_vliet_2018_floe_55m_centre", QUICK))
-        for happens in (lambda s, _, before: s.fragments > before,
-                        lambda s, _, before: len(s.rubble.forces_on_sheet().nodes) > 4):
+        for happens in (
+            lambda s, _, before: s.fragments > before,
+            lambda s, _, before: len(s.rubble.forces_on_sheet().nodes) > 4,
+        ):
             saved, t_ns, first = until(s, happens)
             runs = []
             for _ in range(3):
                 set_back(s, saved, t_ns)
                 runs.append(picture(s, 12))
-            assert s.rubble.blocks().count > 2 and s.rubble.load().any()
+            assert s.rubble.blocks().count > 2
+            assert s.rubble.load().any()
             assert runs[0] == runs[1] == runs[2]
             assert runs[0].startswith(first.sheet.position.tobytes())
             assert first.load.tobytes() in runs[0]

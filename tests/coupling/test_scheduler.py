@@ -94,8 +94,15 @@ def test_serial_explicit_is_drawn_as():
     s = scheduler(trace)
     frames = [s.macro_step(), s.macro_step()]
     assert trace == [
-        "sheet 0-50 under 0", "path for sections []", "rubble sees sheet that carries 0", "rubble +50",
-        "sheet 50-100 under 1", "born piece", "path for sections [3]", "rubble sees sheet that carries 1", "rubble +50",
+        "sheet 0-50 under 0",
+        "path for sections []",
+        "rubble sees sheet that carries 0",
+        "rubble +50",
+        "sheet 50-100 under 1",
+        "born piece",
+        "path for sections [3]",
+        "rubble sees sheet that carries 1",
+        "rubble +50",
     ]
     assert [f.t_ns for f in frames] == [50, 100]
     np.testing.assert_array_equal(frames[0].load.sum(axis=0), [1.0, 0.0, 2.0])
@@ -109,11 +116,24 @@ def test_parallel_explicit_is_drawn_as():
     for _ in range(4):
         s.macro_step()
     assert trace == [
-        "sheet 0-50 under 0", "path for sections []", "rubble sees sheet that carries 0", "rubble +50",
-        "edge for sections []", "sheet 50-100 under 1", "born piece",
-        "path for sections [3]", "rubble sees sheet that carries 1", "rubble +50",
-        "edge for sections [3]", "sheet 100-150 under 2", "rubble sees sheet that carries 1", "rubble +50",
-        "edge for sections [3]", "sheet 150-200 under 3", "rubble sees sheet that carries 2", "rubble +50",
+        "sheet 0-50 under 0",
+        "path for sections []",
+        "rubble sees sheet that carries 0",
+        "rubble +50",
+        "edge for sections []",
+        "sheet 50-100 under 1",
+        "born piece",
+        "path for sections [3]",
+        "rubble sees sheet that carries 1",
+        "rubble +50",
+        "edge for sections [3]",
+        "sheet 100-150 under 2",
+        "rubble sees sheet that carries 1",
+        "rubble +50",
+        "edge for sections [3]",
+        "sheet 150-200 under 3",
+        "rubble sees sheet that carries 2",
+        "rubble +50",
     ]
 
 
@@ -124,19 +144,37 @@ def test_serial_implicit_is_drawn_as():
     frames = [s.macro_step() for _ in range(5)]
 
     def one_pass(begin, force, born=()):
-        return [f"sheet {begin}-{begin + 50} under {force}", *born, f"path for sections {[3] if begin >= 50 else []}",
-                f"rubble sees sheet that carries {force}", "rubble +50"]
+        return [
+            f"sheet {begin}-{begin + 50} under {force}",
+            *born,
+            f"path for sections {[3] if begin >= 50 else []}",
+            f"rubble sees sheet that carries {force}",
+            "rubble +50",
+        ]
 
     assert trace == [
-        *one_pass(0, 0), "set back", *one_pass(0, 1), "set back", *one_pass(0, 2),  # omega 1, then Aitken's 2
+        *one_pass(0, 0),
+        "set back",
+        *one_pass(0, 1),
+        "set back",
+        *one_pass(0, 2),  # omega 1, then Aitken's 2
         *one_pass(50, 2, ["born piece"]),  # 2 + 2/2 = 3 is not 2: not repeated
-        *one_pass(100, 3), "set back", *one_pass(100, 4.5), "set back", *one_pass(100, 6),  # neither 4 nor omega 2
-        *one_pass(150, 6), "set back", *one_pass(150, 7), "set back", *one_pass(150, 8),  # omega at most 1 at first
+        *one_pass(100, 3),
+        "set back",
+        *one_pass(100, 4.5),
+        "set back",
+        *one_pass(100, 6),  # neither 4 nor omega 2
+        *one_pass(150, 6),
+        "set back",
+        *one_pass(150, 7),
+        "set back",
+        *one_pass(150, 8),  # omega at most 1 at first
         *one_pass(200, 10),  # predicted from 6 and 8
     ]
     assert [f.ledger["iterations"] for f in frames] == [3.0, 1.0, 3.0, 3.0, 1.0]
     assert frames[1].ledger["interface_residual"] == pytest.approx(1 / 3)
-    assert frames[-1].ledger["mass_error"] == 0.0 and s.fragments == 1
+    assert frames[-1].ledger["mass_error"] == 0.0
+    assert s.fragments == 1
 
 
 def test_a_fragment_of_a_repeated_window_is_booked_once():

@@ -20,8 +20,13 @@ END = 2.0  #: [s]
 
 
 def run(scheme, windows, iteration=TIGHT):
-    s = Scheduler(stubs.MassOnSpring(), stubs.MassBehindSpring(), Ledger(1.0), round(END * stubs.NS) // windows,
-                  SCHEMES[scheme](iteration))
+    s = Scheduler(
+        stubs.MassOnSpring(),
+        stubs.MassBehindSpring(),
+        Ledger(1.0),
+        round(END * stubs.NS) // windows,
+        SCHEMES[scheme](iteration),
+    )
     frames = [s.macro_step() for _ in range(windows)]
     return np.concatenate((s.sheet.state, s.rubble.state)), s, frames
 
@@ -30,7 +35,9 @@ def error(scheme, windows):
     return np.linalg.norm(run(scheme, windows)[0] - stubs.exact(END))
 
 
-@pytest.mark.parametrize("scheme, order", [("serial-explicit", 1), ("parallel-explicit", 1), ("serial-implicit", 2)])
+@pytest.mark.parametrize(
+    ("scheme", "order"), [("serial-explicit", 1), ("parallel-explicit", 1), ("serial-implicit", 2)]
+)
 def test_order(scheme, order):
     """A force that lags by a window costs one order; a mean force and a straight way that fit each other leave two."""
     errors = [error(scheme, n) for n in (100, 200, 400)]
@@ -149,7 +156,7 @@ def test_the_stiffness_of_the_rubbles_edge_changes_the_way_not_the_answer(k):
     assert max(f.ledger["iterations"] for f in frames) <= (2.0 if k == STIFFNESS else 4.0)
 
 
-@pytest.mark.parametrize("k, grows", [(0.5, False), (1.0, False), (2.0, False), (5.0, True)])
+@pytest.mark.parametrize(("k", "grows"), [(0.5, False), (1.0, False), (2.0, False), (5.0, True)])
 def test_the_explicit_scheme_needs_an_edge_no_stiffer_than_the_sheet_is_in_a_window(k, grows):
     """The error of the force changes by -(k / K - 1) k_w / (k_w + k) from window to window, K that of the sheet.
 

@@ -21,10 +21,19 @@ def test_the_ladder_halves_and_doubles_in_whole_sub_steps():
     assert ByPower(50 * MS, 20 * MS, 120 * MS, 5 * MS, 0.1).ladder == [25 * MS, 50 * MS, 100 * MS]
 
 
-@pytest.mark.parametrize("window, error, jump, then", [
-    (50, 0.2, False, 25), (50, 0.05, False, 50), (50, 0.01, False, 100), (50, 0.0, False, 100),
-    (200, 0.0, False, 200), (5, 0.9, False, 5), (200, 0.9, True, 50), (10, 0.9, True, 10),
-])
+@pytest.mark.parametrize(
+    ("window", "error", "jump", "then"),
+    [
+        (50, 0.2, False, 25),
+        (50, 0.05, False, 50),
+        (50, 0.01, False, 100),
+        (50, 0.0, False, 100),
+        (200, 0.0, False, 200),
+        (5, 0.9, False, 5),
+        (200, 0.9, True, 50),
+        (10, 0.9, True, 10),
+    ],
+)
 def test_next_window(window, error, jump, then):
     assert STEER(window * MS, power(error), jump) == then * MS
     assert fixed(window * MS, power(error), jump) == window * MS

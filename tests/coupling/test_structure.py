@@ -47,16 +47,18 @@ def test_normal_is_a_unit_vector_across_the_surface():
     x, step = float(CONE.face_x(y, z)), 1e-6
     along_y = [float(CONE.face_x(y + step, z)) - x, step, 0.0]
     along_z = [float(CONE.face_x(y, z + step)) - x, 0.0, step]
-    assert abs(n @ along_y) < 1e-10 and abs(n @ along_z) < 1e-10
+    assert abs(n @ along_y) < 1e-10
+    assert abs(n @ along_z) < 1e-10
     assert n[0] < 0  # against the drift
 
 
-@pytest.mark.parametrize("y, z", [(6.0, -2.0), (-6.0, -2.0), (3.0, -12.0)])
+@pytest.mark.parametrize(("y", "z"), [(6.0, -2.0), (-6.0, -2.0), (3.0, -12.0)])
 def test_side_force_follows_from_three_dimensional_statics(y, z):
     """Ice presses with N along -n: the force on the structure is -N n, so F_y / F_x = y / x."""
     force = -1000.0 * CONE.normal(y, z)
     x = float(CONE.face_x(y, z))
-    assert force[0] > 0 and (force[2] > 0 or z < -10)  # drift direction; a downward-breaking cone is lifted
+    assert force[0] > 0
+    assert force[2] > 0 or z < -10
     assert CONE.lateral_ratio(y, x, z) * force[0] == pytest.approx(force[1], rel=1e-12)
     assert np.sign(force[1]) == -np.sign(y)  # the structure is pushed to the middle, the ice away from it
 
@@ -82,20 +84,23 @@ def test_plane_slope_recedes_with_depth_and_has_no_side_force():
     assert s.normal(3.0, -1.0) == pytest.approx([-(0.5**0.5), 0.0, -(0.5**0.5)])
 
 
-@pytest.mark.parametrize("make, words", [
-    (lambda: cone(0.0, 15.0), "0 deg"),
-    (lambda: cone(np.pi / 2, 15.0), "90 deg"),
-    (lambda: cone(np.nan, 15.0), "nan deg"),
-    (lambda: cone(1.0, 15.0, 15.0), "neck radius is 15 m"),
-    (lambda: cone(1.0, -1.0), "waterline radius is -1 m"),
-    (lambda: cone(1.0, 15.0, toe_depth=-2.0), "toe lies above the waterline"),
-    (lambda: cone(1.0, 15.0, top=-1.0), "top of the structure is -1 m"),
-    (lambda: cone(1.0, 15.0, breaking="upward"), "needs toe_depth"),
-    (lambda: cone(1.0, 15.0, breaking="sideways"), "'sideways'"),
-    (lambda: plane_slope(2.0), "must lie between 0 and 90"),
-    (lambda: Structure(((0.0, 1.0), (-1.0, 2.0))), "z ascending"),
-    (lambda: CONE.section_outline(0.0, -1.0, 1.0, 0.0), "tolerance"),
-])
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: cone(0.0, 15.0), "0 deg"),
+        (lambda: cone(np.pi / 2, 15.0), "90 deg"),
+        (lambda: cone(np.nan, 15.0), "nan deg"),
+        (lambda: cone(1.0, 15.0, 15.0), "neck radius is 15 m"),
+        (lambda: cone(1.0, -1.0), "waterline radius is -1 m"),
+        (lambda: cone(1.0, 15.0, toe_depth=-2.0), "toe lies above the waterline"),
+        (lambda: cone(1.0, 15.0, top=-1.0), "top of the structure is -1 m"),
+        (lambda: cone(1.0, 15.0, breaking="upward"), "needs toe_depth"),
+        (lambda: cone(1.0, 15.0, breaking="sideways"), "'sideways'"),
+        (lambda: plane_slope(2.0), "must lie between 0 and 90"),
+        (lambda: Structure(((0.0, 1.0), (-1.0, 2.0))), "z ascending"),
+        (lambda: CONE.section_outline(0.0, -1.0, 1.0, 0.0), "tolerance"),
+    ],
+)
 def test_bad_input_is_refused_in_one_line(make, words):
     with pytest.raises(ValueError, match=words) as error:
         make()

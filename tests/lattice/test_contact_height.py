@@ -83,8 +83,9 @@ def test_what_a_point_feels_and_how_it_moves_belong_together(height):
 
 
 def cushioned(height, long_step=1):
-    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.025, held=back_held(GRID), damping=2000.0, alpha=1e-3,
-                  long_step=long_step)
+    sheet = Sheet(
+        GRID, ICE, hrennikoff(ICE), 0.025, held=back_held(GRID), damping=2000.0, alpha=1e-3, long_step=long_step
+    )
     for k in range(80):
         sheet.advance(0.025 * k, *no_force(GRID), Cushion(height), lambda nodes: None)
     return sheet

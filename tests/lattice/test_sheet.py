@@ -91,7 +91,7 @@ def test_a_hanging_piece_that_has_turned_too_far_leaves():
     sheet, _ = pressed_down(0.05)
     hinge = GRID.nx - 4
     piece = np.zeros((GRID.nx, GRID.ny), bool)
-    piece[hinge + 1:, 4:8] = True
+    piece[hinge + 1 :, 4:8] = True
     corners = piece.ravel()[GRID.cell_nodes]
     for cell in np.flatnonzero(corners.any(axis=1) & ~corners.all(axis=1)):
         if not (GRID.cell_nodes[cell] // GRID.ny == hinge).any() or GRID.cell_nodes[cell][0] % GRID.ny not in (5, 6):
@@ -118,5 +118,6 @@ def test_a_part_that_has_turned_as_a_whole_leaves_without_a_failure(held):
     sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=at)
     sheet.state.q[:] = np.column_stack((-0.2 * (GRID.xy[:, 0] - 12.0), np.full(GRID.nodes, 0.2), np.zeros(GRID.nodes)))
     out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
-    assert not out.failed and [len(p) for p in out.pieces] == [GRID.nodes]
+    assert not out.failed
+    assert [len(p) for p in out.pieces] == [GRID.nodes]
     assert not sheet.present.any()

@@ -30,8 +30,17 @@ RATIOS = (1.0 / 3.0, 0.3, 0.2)
 
 
 def ice(nu: float = 1.0 / 3.0) -> Ice:
-    return Ice(E=3e9, nu=nu, h=1.5, rho_i=900.0, rho_w=1025.0, sigma_t=0.5e6, sigma_f=0.7e6, sigma_c=3e6,
-               beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8))
+    return Ice(
+        E=3e9,
+        nu=nu,
+        h=1.5,
+        rho_i=900.0,
+        rho_w=1025.0,
+        sigma_t=0.5e6,
+        sigma_f=0.7e6,
+        sigma_c=3e6,
+        beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8),
+    )
 
 
 STRENGTH = Strength(ice(), sigma_spall=-20e6, sigma_f_upward=0.6e6, sigma_f_downward=0.8e6, sigma_shear=0.7e6, K_IC=2e5)
@@ -40,16 +49,22 @@ STRENGTH = Strength(ice(), sigma_spall=-20e6, sigma_f_upward=0.6e6, sigma_f_down
 def rigid_in_plane() -> dict[str, np.ndarray]:
     x, y = GRID.xy.T
     one, zero = np.ones(GRID.nodes), np.zeros(GRID.nodes)
-    return {"along x": np.column_stack((one, zero)), "along y": np.column_stack((zero, one)),
-            "turn": np.column_stack((-y, x))}
+    return {
+        "along x": np.column_stack((one, zero)),
+        "along y": np.column_stack((zero, one)),
+        "turn": np.column_stack((-y, x)),
+    }
 
 
 def rigid_out_of_plane() -> dict[str, np.ndarray]:
     """Heave and two tilts; a tilt w = x turns phi_x = -1, because the shear (2.3) is dw/dx + phi_x."""
     x, y = GRID.xy.T
     one, zero = np.ones(GRID.nodes), np.zeros(GRID.nodes)
-    return {"heave": np.column_stack((one, zero, zero)), "tilt along x": np.column_stack((x, -one, zero)),
-            "tilt along y": np.column_stack((y, zero, -one))}
+    return {
+        "heave": np.column_stack((one, zero, zero)),
+        "tilt along x": np.column_stack((x, -one, zero)),
+        "tilt along y": np.column_stack((y, zero, -one)),
+    }
 
 
 def energy(rows: np.ndarray, motion: np.ndarray) -> float:
@@ -106,8 +121,13 @@ def test_no_cell_fails_by_moving_rigidly(criterion: str) -> None:
 
 def test_strain_that_keeps_the_rotation_is_rejected() -> None:
     turn = 1e-2 * rigid_in_plane()["turn"][GRID.cell_nodes]
-    wrong = CellState(Connections.of(turn, GRID.d), Connections.of(0.0 * turn, GRID.d), np.zeros((GRID.cells, 4)),
-                      np.zeros((GRID.cells, 2)), GRID.d)
+    wrong = CellState(
+        Connections.of(turn, GRID.d),
+        Connections.of(0.0 * turn, GRID.d),
+        np.zeros((GRID.cells, 4)),
+        np.zeros((GRID.cells, 2)),
+        GRID.d,
+    )
     assert np.hypot(*(wrong.membrane.s12.mean(axis=1), wrong.membrane.s21.mean(axis=1))).min() > 1e-3
     objective = CellState.of(GRID, 1e-2 * rigid_in_plane()["turn"], np.zeros((GRID.nodes, 3)))
     assert np.abs(tension(objective, STRENGTH)).max() < 1e-9

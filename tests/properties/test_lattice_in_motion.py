@@ -24,8 +24,17 @@ STEPS = 400
 
 
 def ice(nu: float = 1.0 / 3.0) -> Ice:
-    return Ice(E=3e9, nu=nu, h=1.5, rho_i=900.0, rho_w=1025.0, sigma_t=0.5e6, sigma_f=0.7e6, sigma_c=3e6,
-               beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8))
+    return Ice(
+        E=3e9,
+        nu=nu,
+        h=1.5,
+        rho_i=900.0,
+        rho_w=1025.0,
+        sigma_t=0.5e6,
+        sigma_f=0.7e6,
+        sigma_c=3e6,
+        beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8),
+    )
 
 
 STRENGTH = Strength(ice(), sigma_spall=-20e6, sigma_f_upward=0.6e6, sigma_f_downward=0.8e6, sigma_shear=0.7e6, K_IC=2e5)
@@ -42,10 +51,7 @@ def momenta(mass: np.ndarray, velocity: np.ndarray, in_plane: bool) -> np.ndarra
     """
     x, y = GRID.xy.T
     one, zero = np.ones(GRID.nodes), np.zeros(GRID.nodes)
-    if in_plane:
-        motions = [(one, zero), (zero, one), (-y, x)]
-    else:
-        motions = [(one, zero, zero), (x, -one, zero), (y, zero, -one)]
+    motions = [(one, zero), (zero, one), (-y, x)] if in_plane else [(one, zero, zero), (x, -one, zero), (y, zero, -one)]
     fields = [np.column_stack(m).ravel() for m in motions]
     return np.array([f @ (mass * velocity) for f in fields])
 

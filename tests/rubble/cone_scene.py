@@ -24,8 +24,17 @@ def rectangle(x0, z0, x1, z1):
 
 def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
     ends = np.array([x, x + length])
-    return layer.add_block(key, rectangle(x, z - H, x + length, z), ends, np.array([WIDTH]), 846.0, velocity, 0.0,
-                           layer.centre(key) if y is None else y, 7)
+    return layer.add_block(
+        key,
+        rectangle(x, z - H, x + length, z),
+        ends,
+        np.array([WIDTH]),
+        846.0,
+        velocity,
+        0.0,
+        layer.centre(key) if y is None else y,
+        7,
+    )
 
 
 def filled(threads=1, **kwargs):

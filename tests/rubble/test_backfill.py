@@ -13,8 +13,11 @@ AREA = LENGTH * WIDTH
 def held(backfill, depth, seconds, **physics):
     """A block whose top is held ``depth`` under water by a lid; the force on the lid, and the layer."""
     lid = np.array([(-20.0, -depth), (20.0, -depth), (20.0, 30.0), (-20.0, 30.0)])
-    layer = RubbleLayer(RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill=backfill, filling_time=TIME,
-                                      **physics), WIDTH, solids=lambda y: [lid])
+    layer = RubbleLayer(
+        RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill=backfill, filling_time=TIME, **physics),
+        WIDTH,
+        solids=lambda y: [lid],
+    )
     outline = np.array([(-5.0, -depth - H), (5.0, -depth - H), (5.0, -depth), (-5.0, -depth)])
     layer.add_block(0, outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.0, 0.0, 0)
     for _ in range(round(seconds / 0.05)):
@@ -27,7 +30,7 @@ def lift(depth, share):
     return (RHO_W * G * (depth + H - share * depth) - RHO_I * G * H) * AREA
 
 
-@pytest.mark.parametrize("backfill, share", [("full", 1.0), ("none", 0.0)])
+@pytest.mark.parametrize(("backfill", "share"), [("full", 1.0), ("none", 0.0)])
 @pytest.mark.parametrize("depth", [0.5, 4.0])
 def test_lift_of_a_dry_and_of_a_flooded_block(backfill, share, depth):
     force, _ = held(backfill, depth, 4.0)
@@ -54,15 +57,29 @@ def test_old_rubble_is_flooded_and_new_pieces_are_dry():
     layer = RubbleLayer(RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill="none"), WIDTH)
     outline = np.array([(-5.0, -5.0), (5.0, -5.0), (5.0, -2.0), (-5.0, -2.0)])
     for i, flooded in enumerate((None, True)):
-        layer.add_block(0, outline - [0.0, 20.0 * i], np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.0,
-                        0.0, 0, flooded=flooded)
+        layer.add_block(
+            0,
+            outline - [0.0, 20.0 * i],
+            np.array([-5.0, 5.0]),
+            np.array([WIDTH]),
+            RHO_I,
+            (0.0, 0.0),
+            0.0,
+            0.0,
+            0,
+            flooded=flooded,
+        )
     assert [b.flooded for b in layer.blocks] == [0.0, 1.0]
 
 
 def books(sign=1.0):
     """Energy of a dry block that bobs without drag: start and end, with the work of its dry top."""
-    layer = RubbleLayer(RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill="none", form_drag=0.0,
-                                      skin_drag=0.0, substep=0.001), WIDTH)
+    layer = RubbleLayer(
+        RubblePhysics(
+            rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill="none", form_drag=0.0, skin_drag=0.0, substep=0.001
+        ),
+        WIDTH,
+    )
     outline = np.array([(-5.0, -4.5), (5.0, -4.5), (5.0, -1.5), (-5.0, -1.5)])
     layer.add_block(0, outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.02, 0.0, 0)
     start = layer.energy

@@ -17,16 +17,22 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
     """Five sections get a block each time; returns the layer, what was fed, and afloat, cleared, Fx per window."""
     shape = cone(np.radians(45), 10.0, 6.0, top=5.0, toe_depth=8.0)
     physics = RubblePhysics(rho_i=846.0, rho_w=rho_w, thickness=H, added_mass=0.2, added_inertia=0.2)
-    layer = RubbleLayer(physics, WIDTH, revolved=True, domain=Domain(x_max=14.0, depth=60.0, y_max=30.0),
-                        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)))
+    layer = RubbleLayer(
+        physics,
+        WIDTH,
+        revolved=True,
+        domain=Domain(x_max=14.0, depth=60.0, y_max=30.0),
+        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+    )
     random, draft, fed, rows = np.random.default_rng(1), H * 846 / rho_w, [], []
     for window in range(round(seconds / 0.05)):
         if window % round(every / 0.05) == 0:
             for key in range(-2, 3):
                 x, y = -32.0 + random.uniform(-1, 1), layer.centre(key) + random.uniform(-1.5, 1.5)
                 outline = np.array([(x - 2, -draft), (x + 2, -draft), (x + 2, H - draft), (x - 2, H - draft)])
-                number = layer.add_block(key, outline, np.array([x - 2, x + 2]), np.array([WIDTH]), 846.0, (0.3, 0.0),
-                                         0.0, y, 0)
+                number = layer.add_block(
+                    key, outline, np.array([x - 2, x + 2]), np.array([WIDTH]), 846.0, (0.3, 0.0), 0.0, y, 0
+                )
                 thrust(layer, number, push)
                 fed.append(layer.block(number).mass)
         layer.advance(WINDOW)
@@ -58,9 +64,13 @@ def test_a_steady_feed_comes_to_a_steady_state():
 def test_a_block_passes_under_the_toe():
     """Below the toe nothing stands in the way; above it the neck does."""
     shape = cone(np.radians(45), 10.0, 6.0, top=5.0, toe_depth=8.0)
-    layer = RubbleLayer(RubblePhysics(rho_i=1006.0, rho_w=1006.0, thickness=H, form_drag=0.0, skin_drag=0.0), WIDTH,
-                        revolved=True, domain=Domain(x_max=14.0),
-                        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)))
+    layer = RubbleLayer(
+        RubblePhysics(rho_i=1006.0, rho_w=1006.0, thickness=H, form_drag=0.0, skin_drag=0.0),
+        WIDTH,
+        revolved=True,
+        domain=Domain(x_max=14.0),
+        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+    )
     for z in (-7.0, -9.1):
         outline = np.array([(-12, z - 1), (-8, z - 1), (-8, z + 1), (-12, z + 1)], dtype=float)
         layer.add_block(0, outline, np.array([-12.0, -8.0]), np.array([WIDTH]), 1006.0, (0.5, 0.0), 0.0, 0.0, 0)
@@ -73,10 +83,22 @@ def test_a_block_passes_under_the_toe():
 def pressed_aside(feed_speed):
     """A block pressed against the flank of a cone for 10 s; its largest speed across [m/s] and the push's work [J]."""
     shape = cone(np.radians(45), 10.0, 6.0, top=5.0, toe_depth=8.0)
-    physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, mu_ice_ice=0.0, mu_structure=0.0, form_drag=0.0,
-                            skin_drag=0.0, feed_speed=feed_speed)
-    layer = RubbleLayer(physics, WIDTH, revolved=True, solids=lambda y: convex_parts(
-        shape.section_outline(y, shape.bottom, shape.top, 1e-3)))
+    physics = RubblePhysics(
+        rho_i=846.0,
+        rho_w=1006.0,
+        thickness=H,
+        mu_ice_ice=0.0,
+        mu_structure=0.0,
+        form_drag=0.0,
+        skin_drag=0.0,
+        feed_speed=feed_speed,
+    )
+    layer = RubbleLayer(
+        physics,
+        WIDTH,
+        revolved=True,
+        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+    )
     draft = H * 846 / 1006
     outline = np.array([(-14.0, -draft), (-10.0, -draft), (-10.0, H - draft), (-14.0, H - draft)])
     number = layer.add_block(1, outline, np.array([-14.0, -10.0]), np.array([WIDTH]), 846.0, (0.1, 0.0), 0.0, 5.0, 0)

@@ -19,8 +19,18 @@ def pressed(strength=STRENGTH, angle=np.pi / 4, windows=100, force=FORCE):
     layer = RubbleLayer(physics, WIDTH, solids=lambda y: [WALL])
     box = place(np.array([(-3.0, -1.5), (3.0, -1.5), (3.0, 1.5), (-3.0, 1.5)]), 0.0, 0.0, angle, 0.0, 0.0)
     x = -float(box[:, 0].max())
-    layer.add_block(0, box + np.array([x, 0.0]), x * np.cos(angle) + np.array([-3.0, 3.0]), np.array([WIDTH]), 900.0,
-                    (0.0, 0.0), 0.0, 0.0, 0, angle)
+    layer.add_block(
+        0,
+        box + np.array([x, 0.0]),
+        x * np.cos(angle) + np.array([-3.0, 3.0]),
+        np.array([WIDTH]),
+        900.0,
+        (0.0, 0.0),
+        0.0,
+        0.0,
+        0,
+        angle,
+    )
     lock_rotation(layer, 0)
     layer.block(0).body.mass = 1e5
     thrust(layer, 0, force)
@@ -49,7 +59,8 @@ def test_a_corner_crushes_until_its_area_carries_the_force():
 
 def test_without_a_limit_nothing_crushes():
     layer = pressed(float("inf"))
-    assert layer.crushed_mass == 0.0 and face_on_wall(layer) == 0.0
+    assert layer.crushed_mass == 0.0
+    assert face_on_wall(layer) == 0.0
 
 
 def test_a_face_that_is_large_enough_does_not_crush():

@@ -14,7 +14,7 @@ from rubble.physics import RubblePhysics
 WIDTH = 2.0
 
 
-@pytest.mark.parametrize("v, mu", [(0.0, 0.7), (1e-6, 0.7), (1e-4, 0.4), (1e-2, 0.1), (-1e-2, 0.1), (1.0, 0.1)])
+@pytest.mark.parametrize(("v", "mu"), [(0.0, 0.7), (1e-6, 0.7), (1e-4, 0.4), (1e-2, 0.1), (-1e-2, 0.1), (1.0, 0.1)])
 def test_rate_dependent_friction(v, mu):
     assert rate_dependent(v) == pytest.approx(mu, rel=1e-12)
 
@@ -27,8 +27,18 @@ def sliding(mu, slope, velocity, seconds=0.5):
     x, c, s = 50.0, np.cos(slope), np.sin(slope)
     z = x * np.tan(slope) - 0.002
     box = place(np.array([(-2.0, 0.0), (2.0, 0.0), (2.0, 1.0), (-2.0, 1.0)]), x, z, slope, 0.0, 0.0)
-    layer.add_block(0, box, x * c + z * s + np.array([-2.0, 2.0]), np.array([WIDTH]), 846.0,
-                    (-velocity * c, -velocity * s), 0.0, 0.0, 0, slope)
+    layer.add_block(
+        0,
+        box,
+        x * c + z * s + np.array([-2.0, 2.0]),
+        np.array([WIDTH]),
+        846.0,
+        (-velocity * c, -velocity * s),
+        0.0,
+        0.0,
+        0,
+        slope,
+    )
     layer.advance(round(seconds / physics.substep))
     v = layer.table().velocity[0]
     return float(np.hypot(v[0], v[2]))
@@ -44,7 +54,7 @@ def test_a_slow_block_holds_where_a_fast_one_slides_on():
     assert sliding(0.7, slope, 0.5, 0.1) == pytest.approx(slowed, rel=0.01)
 
 
-@pytest.mark.parametrize("y, v_s, v_y", [(0.0, 1.0, 0.0), (8.0, 0.3, 0.0), (-8.0, -0.3, 0.4), (9.0, 0.0, 0.2)])
+@pytest.mark.parametrize(("y", "v_s", "v_y"), [(0.0, 1.0, 0.0), (8.0, 0.3, 0.0), (-8.0, -0.3, 0.4), (9.0, 0.0, 0.2)])
 def test_shares_are_three_dimensional_statics(y, v_s, v_y):
     """p, n_y and the factors against vectors: normal, slip and friction on a cone of 45 degrees and radius 10 m."""
     mu, radius = 0.25, 10.0
@@ -59,7 +69,8 @@ def test_shares_are_three_dimensional_statics(y, v_s, v_y):
     assert (p, n_y) == pytest.approx((plane, n[1]), rel=1e-12)
     assert n @ slip == pytest.approx(0.0, abs=1e-12)
     found, more, across = shares(np.array([mu, 1.0, y]), p, n_y, v_s, v_y)
-    assert found == mu and 1.0 / more == pytest.approx(force @ m, rel=1e-5)
+    assert found == mu
+    assert 1.0 / more == pytest.approx(force @ m, rel=1e-5)
     assert n_y - mu * p * across == pytest.approx(force[1], rel=1e-5, abs=1e-9)
 
 

@@ -35,7 +35,7 @@ def test_clockwise_points_are_turned():
     assert moments(contiguous(BOX[::-1]))[0] == pytest.approx(8.0)
 
 
-@pytest.mark.parametrize("c, area", [(-1.0, 0.0), (0.0, 0.0), (1.0, 2.0), (3.5, 7.0), (4.0, 8.0), (9.0, 8.0)])
+@pytest.mark.parametrize(("c", "area"), [(-1.0, 0.0), (0.0, 0.0), (1.0, 2.0), (3.5, 7.0), (4.0, 8.0), (9.0, 8.0)])
 def test_clip_by_a_vertical_line(c, area):
     assert moments(clip(BOX, 1.0, 0.0, c))[0] == pytest.approx(area, abs=1e-14)
 

@@ -15,16 +15,24 @@ UNDER = -H * RHO_I / RHO_W
 
 
 def pile(volume, sections, seed=2018, mu=0.1, threads=1):
-    physics = RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, mu_ice_ice=mu, restitution=0.1, added_mass=0.2,
-                            added_inertia=0.2)
-    layer = RubbleLayer(physics, PITCH, revolved=True, domain=Domain(x_max=21.0, depth=60.0, y_max=90.0),
-                        threads=threads, solids=lambda y: convex_parts(SHAPE.section_outline(y, -20.0, 5.0, 1e-3)))
+    physics = RubblePhysics(
+        rho_i=RHO_I, rho_w=RHO_W, thickness=H, mu_ice_ice=mu, restitution=0.1, added_mass=0.2, added_inertia=0.2
+    )
+    layer = RubbleLayer(
+        physics,
+        PITCH,
+        revolved=True,
+        domain=Domain(x_max=21.0, depth=60.0, y_max=90.0),
+        threads=threads,
+        solids=lambda y: convex_parts(SHAPE.section_outline(y, -20.0, 5.0, 1e-3)),
+    )
     fronts = {}
     for key in sections:
         face = float(SHAPE.face_x(layer.centre(key), UNDER))
         x = np.arange(face - 0.5, face - 60.0, -2.8)
-        layer.set_sheet(key, x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H, (1e9, 1e9),
-                        (5e4, 5e4))
+        layer.set_sheet(
+            key, x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H, (1e9, 1e9), (5e4, 5e4)
+        )
         fronts[key] = (face, UNDER)
     return layer, settle(layer, fronts, volume, seed)
 
@@ -34,19 +42,24 @@ def check(found, volume):
     assert found.volume == pytest.approx(volume, rel=1e-12)
     assert found.force == pytest.approx(weight, rel=0.03)
     assert found.calm <= CALM
-    assert 0.05 < found.porosity < 0.5 and 0.0 < found.slope < np.radians(75)
+    assert 0.05 < found.porosity < 0.5
+    assert 0.0 < found.slope < np.radians(75)
 
 
 def test_a_pile_lifts_the_sheet_with_its_buoyant_weight():
     layer, found = pile(600.0, (0, 1))
     check(found, 600.0)
-    assert layer.time == 0.0 and not layer.cleared and found.mass == pytest.approx(layer.mass)
+    assert layer.time == 0.0
+    assert not layer.cleared
+    assert found.mass == pytest.approx(layer.mass)
     assert all(b.flooded == 1.0 for b in layer.blocks)
 
 
 def test_the_same_seed_gives_the_same_pile_and_another_seed_another():
-    runs = [pile(300.0, (0,), seed, threads=threads)[0].table().position.tobytes()
-            for seed, threads in ((7, 1), (7, 2), (8, 1))]
+    runs = [
+        pile(300.0, (0,), seed, threads=threads)[0].table().position.tobytes()
+        for seed, threads in ((7, 1), (7, 2), (8, 1))
+    ]
     assert runs[0] == runs[1] != runs[2]
 
 

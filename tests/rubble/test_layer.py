@@ -45,7 +45,8 @@ def test_mass_stays_through_side_steps_and_clearing():
             block.v_y = 0.4 * (1 if block.id % 2 else -1)
     drive(layer, 120)
     table = layer.table()
-    assert layer.cleared and len(table.id) + len(layer.cleared) == count
+    assert layer.cleared
+    assert len(table.id) + len(layer.cleared) == count
     assert any(keys[i] != s for i, s in zip(table.id.tolist(), table.section.tolist(), strict=True))
     assert balance(layer) == pytest.approx(total, rel=1e-14)
     assert balance(layer, leak=2 * layer.cleared_mass) != pytest.approx(total, rel=1e-3)
@@ -58,7 +59,8 @@ def test_a_block_crosses_into_the_next_section_with_its_motion():
     layer.section(0).blocks[0].v_y = 0.5
     layer.advance(10)
     table = layer.table()
-    assert table.section[0] == 1 and table.position[0, 1] > 1.4
+    assert table.section[0] == 1
+    assert table.position[0, 1] > 1.4
     assert table.velocity[0] == pytest.approx([0.3, 0.5, 0.0], abs=0.05)
     layer.advance(10)
     assert layer.table().id[0] == 0
@@ -86,7 +88,8 @@ def test_blocks_are_pushed_outwards_on_both_sides_of_the_cone():
         layer.advance(10)
         right, left = right + layer.table().load[0, 1], left + layer.table().load[1, 1]
     v = layer.table().velocity[:, 1]
-    assert v[0] < 0 < v[1] and v[0] == pytest.approx(-v[1], rel=1e-9)
+    assert v[0] < 0 < v[1]
+    assert v[0] == pytest.approx(-v[1], rel=1e-9)
     assert left < 0 < right  # the structure is pushed towards the middle plane
 
 
@@ -118,9 +121,11 @@ def test_the_table_is_in_the_order_of_numbers_and_its_outlines_fit():
     layer = filled()
     layer.advance(5)
     t = layer.table()
-    assert t.id.tolist() == list(range(40)) and t.offset[-1] == len(t.outline) and (t.fragment == 7).all()
+    assert t.id.tolist() == list(range(40))
+    assert t.offset[-1] == len(t.outline)
+    assert (t.fragment == 7).all()
     for i in range(40):
-        area, x, z, _ = moments(np.ascontiguousarray(t.outline[t.offset[i]:t.offset[i + 1]]))
+        area, x, z, _ = moments(np.ascontiguousarray(t.outline[t.offset[i] : t.offset[i + 1]]))
         assert area * t.width[i] * 846 == pytest.approx(t.mass[i], rel=1e-9)
         assert (x, z) == pytest.approx(tuple(t.position[i, [0, 2]]), rel=1e-9)
 
@@ -129,7 +134,10 @@ def test_an_empty_layer_runs():
     layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut)
     layer.advance(3)
     t = layer.table()
-    assert len(t.id) == 0 and t.load.shape == (0, 3) and layer.mass == 0.0 and not layer.momentum.any()
+    assert len(t.id) == 0
+    assert t.load.shape == (0, 3)
+    assert layer.mass == 0.0
+    assert not layer.momentum.any()
     assert layer.sheet_forces(4).shape == (0, 2)
 
 
@@ -145,12 +153,21 @@ def test_removing_the_sheet_frees_the_block_under_it():
     assert layer.table().position[0, 2] > held + 0.5
 
 
-@pytest.mark.parametrize("call, words", [
-    (lambda la: la.advance(0), "at least 1"),
-    (lambda la: la.set_sheet(0, [0.0, 1.0], [0, 0], 2.0, np.zeros((2, 2)), H, (1e9, 1e9), (5e4, 5e4)), "must decrease"),
-    (lambda la: la.set_sheet(0, [0.0, -1.0], [0, 0], 1.0, np.zeros((2, 2)), H, (1e9, np.inf), (5e4, 5e4)), "finite"),
-    (lambda la: RubbleLayer(PHYSICS, 0.0), "pitch"),
-])
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda la: la.advance(0), "at least 1"),
+        (
+            lambda la: la.set_sheet(0, [0.0, 1.0], [0, 0], 2.0, np.zeros((2, 2)), H, (1e9, 1e9), (5e4, 5e4)),
+            "must decrease",
+        ),
+        (
+            lambda la: la.set_sheet(0, [0.0, -1.0], [0, 0], 1.0, np.zeros((2, 2)), H, (1e9, np.inf), (5e4, 5e4)),
+            "finite",
+        ),
+        (lambda la: RubbleLayer(PHYSICS, 0.0), "pitch"),
+    ],
+)
 def test_bad_calls_are_refused(call, words):
     with pytest.raises(ValueError, match=words):
         call(RubbleLayer(PHYSICS, WIDTH))

@@ -18,9 +18,20 @@ AIR = dict(rho_i=846.0, rho_w=1e-9, thickness=1.0, form_drag=0.0, skin_drag=0.0)
 def add(layer, x, z, length, height, velocity=(0.0, 0.0), angle=0.0, flooded=True, alone=True):
     box = np.array([(-length, -height), (length, -height), (length, height), (-length, height)]) / 2
     middle = x * np.cos(angle) + z * np.sin(angle)
-    return layer.add_block(0, place(box, x, z, angle, 0.0, 0.0), middle + np.array([-length, length]) / 2,
-                           np.array([WIDTH]), 846.0, velocity, 0.0, layer.centre(0), 0, angle, flooded=flooded,
-                           alone=alone)
+    return layer.add_block(
+        0,
+        place(box, x, z, angle, 0.0, 0.0),
+        middle + np.array([-length, length]) / 2,
+        np.array([WIDTH]),
+        846.0,
+        velocity,
+        0.0,
+        layer.centre(0),
+        0,
+        angle,
+        flooded=flooded,
+        alone=alone,
+    )
 
 
 def lost(before, after, *names):
@@ -50,8 +61,11 @@ def test_a_block_that_rises_at_its_terminal_speed_loses_its_net_buoyancy_times_t
 
 def test_a_block_that_slides_down_a_slope_loses_mu_times_the_normal_force_times_the_way():
     slope, mu = np.radians(30.0), 0.2
-    layer = RubbleLayer(RubblePhysics(**AIR, mu_structure=mu, substep=0.001), WIDTH, solids=lambda y: convex_parts(
-        np.array([(0.0, 0.0), (100.0, 100.0 * np.tan(slope))]), back=300.0))
+    layer = RubbleLayer(
+        RubblePhysics(**AIR, mu_structure=mu, substep=0.001),
+        WIDTH,
+        solids=lambda y: convex_parts(np.array([(0.0, 0.0), (100.0, 100.0 * np.tan(slope))]), back=300.0),
+    )
     x, c, s = 60.0, np.cos(slope), np.sin(slope)
     add(layer, x - 0.498 * s, x * np.tan(slope) + 0.498 * c, 4.0, 1.0, (-c, -s), slope)
     layer.advance(500)
@@ -116,8 +130,9 @@ def test_overlap_that_is_corrected_moves_blocks_without_speed_and_is_booked():
 
 def lively(substep, wrong=None, seconds=10.0):
     """Residual of a pile between a slope and a moving sheet with everything at work, and its largest loss."""
-    physics = RubblePhysics(**ICE, added_mass=0.2, added_inertia=0.2, restitution=0.1, substep=substep,
-                            backfill="filling")
+    physics = RubblePhysics(
+        **ICE, added_mass=0.2, added_inertia=0.2, restitution=0.1, substep=substep, backfill="filling"
+    )
     layer = RubbleLayer(physics, 3.0, solids=lambda y: convex_parts(np.array([(30.0, -30.0), (-5.0, 5.0)]), back=60.0))
     for i in range(9):
         add(layer, -4.0 - 5.0 * (i % 3), -4.0 - 4.0 * (i // 3), 4.0, 2.5, (1.0, 0.2 * (-1) ** i), flooded=None)

@@ -20,8 +20,12 @@ def on_slope(mu=0.1, top=3.0, foot=0.6):
     shape = plane_slope(SLOPE, top=top, toe_depth=10.0, breaking="upward")
     physics = RubblePhysics(rho_i=RHO, rho_w=999.8, thickness=H, mu_structure=mu, iterations=60)
     crest = top / np.tan(SLOPE)
-    layer = RubbleLayer(physics, WIDTH, domain=Domain(x_max=crest + 2 * H), solids=lambda y: convex_parts(
-        shape.section_outline(y, -10.0, top), back=crest + 100.0))
+    layer = RubbleLayer(
+        physics,
+        WIDTH,
+        domain=Domain(x_max=crest + 2 * H),
+        solids=lambda y: convex_parts(shape.section_outline(y, -10.0, top), back=crest + 100.0),
+    )
     along, out = np.array([np.cos(SLOPE), np.sin(SLOPE)]), np.array([-np.sin(SLOPE), np.cos(SLOPE)])
     start = foot / np.sin(SLOPE) * along + 1e-4 * out
     outline = np.array([start, start + L * along, start + L * along + H * out, start + H * out])
@@ -78,19 +82,26 @@ def test_without_a_push_it_slides_back_into_the_water_and_floats():
         layer.advance(10)
     t = layer.table()
     assert t.position[0, 2] == pytest.approx(H / 2 - H * RHO / 999.8, abs=0.02)
-    assert t.position[0, 0] < 0.0 and not layer.cleared
+    assert t.position[0, 0] < 0.0
+    assert not layer.cleared
 
 
 @pytest.mark.parametrize("y", [1.0, -1.0])
 def test_on_an_upward_cone_ice_clears_sideways(y):
     shape = cone(np.radians(60), 2.5, 0.75, toe_depth=4.0, top=8.0, breaking="upward")
     physics = RubblePhysics(rho_i=RHO, rho_w=999.8, thickness=H, mu_structure=0.1)
-    layer = RubbleLayer(physics, WIDTH, revolved=True, domain=Domain(x_max=3.5, y_max=20.0),
-                        solids=lambda at: convex_parts(shape.section_outline(at, -4.0, 8.0, 1e-3)))
+    layer = RubbleLayer(
+        physics,
+        WIDTH,
+        revolved=True,
+        domain=Domain(x_max=3.5, y_max=20.0),
+        solids=lambda at: convex_parts(shape.section_outline(at, -4.0, 8.0, 1e-3)),
+    )
     draft = H * RHO / 999.8
     outline = np.array([(-5.0, -draft), (-3.5, -draft), (-3.5, H - draft), (-5.0, H - draft)])
-    number = layer.add_block(int(np.sign(y)), outline, np.array([-5.0, -3.5]), np.array([WIDTH]), RHO, (0.3, 0.0), 0.0,
-                             y, 0)
+    number = layer.add_block(
+        int(np.sign(y)), outline, np.array([-5.0, -3.5]), np.array([WIDTH]), RHO, (0.3, 0.0), 0.0, y, 0
+    )
     thrust(layer, number, 3.0 * RHO * G * H * L * WIDTH)
     highest = 0.0
     for _ in range(1200):

@@ -17,7 +17,8 @@ def test_a_run_goes_on_from_its_checkpoint_with_the_same_bits(scene):
     again = scene.drive(restore(saved, live), 40)
     assert live.load_on_structure.any()
     assert scene.picture(live) == scene.picture(again)
-    assert live.time == again.time and live.cleared == again.cleared
+    assert live.time == again.time
+    assert live.cleared == again.cleared
 
 
 def test_a_copy_with_two_threads_has_the_same_bits(scene):
@@ -57,11 +58,14 @@ def test_a_wrong_copy_is_noticed(scene):
 def test_another_process_has_the_same_bits(scene, tmp_path):
     live, saved = checkpoint(scene.drive(scene.filled(), 20))
     (tmp_path / "saved").write_bytes(saved)
-    script = ("import sys; sys.path.insert(0, sys.argv[2]); from pathlib import Path; from cone_scene import *; "
-              "from rubble.snapshot import restore; import hashlib; "
-              "layer = drive(restore(Path(sys.argv[1]).read_bytes(), filled()), 20); "
-              "print(hashlib.sha256(picture(layer)).hexdigest())")
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[2]); from pathlib import Path; from cone_scene import *; "
+        "from rubble.snapshot import restore; import hashlib; "
+        "layer = drive(restore(Path(sys.argv[1]).read_bytes(), filled()), 20); "
+        "print(hashlib.sha256(picture(layer)).hexdigest())"
+    )
     run = [sys.executable, "-c", script, str(tmp_path / "saved"), str(Path(__file__).parent)]
     here = [subprocess.run(run, capture_output=True, text=True, check=True).stdout for _ in range(2)]
-    assert here[0] == here[1] and len(here[0]) > 60
+    assert here[0] == here[1]
+    assert len(here[0]) > 60
     assert len(save(live)) > 1000

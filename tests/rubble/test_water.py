@@ -15,14 +15,30 @@ RHO_G = PHYSICS.rho_w * PHYSICS.g
 
 
 def box(x, z, length, height):
-    return np.array([(x - length / 2, z - height / 2), (x + length / 2, z - height / 2),
-                     (x + length / 2, z + height / 2), (x - length / 2, z + height / 2)])
+    return np.array(
+        [
+            (x - length / 2, z - height / 2),
+            (x + length / 2, z - height / 2),
+            (x + length / 2, z + height / 2),
+            (x - length / 2, z + height / 2),
+        ]
+    )
 
 
-def add_box(layer, x=0.0, z=0.0, length=10.0, height=3.0, width=2.8, density=846.0, velocity=(0.0, 0.0), omega=0.0,
-            section=0):
-    return layer.add_block(section, box(x, z, length, height), np.array([x - length / 2, x + length / 2]),
-                           np.array([width]), density, velocity, omega, layer.centre(section), 0)
+def add_box(
+    layer, x=0.0, z=0.0, length=10.0, height=3.0, width=2.8, density=846.0, velocity=(0.0, 0.0), omega=0.0, section=0
+):
+    return layer.add_block(
+        section,
+        box(x, z, length, height),
+        np.array([x - length / 2, x + length / 2]),
+        np.array([width]),
+        density,
+        velocity,
+        omega,
+        layer.centre(section),
+        0,
+    )
 
 
 def force_on(edges, state, form=0.0, skin=0.0):
@@ -106,7 +122,7 @@ def test_a_flat_block_floats_flat_and_a_tall_one_turns_over():
     assert np.cos(tall) ** 2 < 0.05  # lies on its side
 
 
-@pytest.mark.parametrize("density, start", [(846.0, -300.0), (1166.0, -5.0)])
+@pytest.mark.parametrize(("density", "start"), [(846.0, -300.0), (1166.0, -5.0)])
 def test_terminal_velocity(density, start):
     """rise or fall of a box, broadside: (rho_w - rho) g h L w = rho_w / 2 C_d L w v^2 + 2 rho_w / 2 C_f h w v^2."""
     layer = RubbleLayer(PHYSICS, 2.8)
@@ -158,8 +174,19 @@ def test_what_drag_takes_is_what_is_missing():
 
 
 def test_mass_of_a_block_and_its_strips():
-    block = make_block(0, PHYSICS, box(5.0, -1.0, 6.0, 2.0), np.array([2.0, 5.0, 8.0]), np.array([1.0, 3.0]), 900.0,
-                       (0.0, 0.0), 0.0, 0.0, 0, 0.0)
+    block = make_block(
+        0,
+        PHYSICS,
+        box(5.0, -1.0, 6.0, 2.0),
+        np.array([2.0, 5.0, 8.0]),
+        np.array([1.0, 3.0]),
+        900.0,
+        (0.0, 0.0),
+        0.0,
+        0.0,
+        0,
+        0.0,
+    )
     assert block.mass == pytest.approx(900 * 2 * 3 * (1 + 3), rel=1e-14)
     assert block.body.position.x == pytest.approx((3.5 * 1 + 6.5 * 3) / 4)
     assert moments(clip(block.prism.polygon, 1.0, 0.0, 1e9))[0] == pytest.approx(12.0)
@@ -168,28 +195,39 @@ def test_mass_of_a_block_and_its_strips():
 def test_a_tilted_block_takes_its_strips_along_its_own_axis():
     tilted = place(contiguous(box(0.0, 0.0, 6.0, 2.0)), 4.0, -3.0, 0.4, 0.0, 0.0)
     middle = 4.0 * np.cos(0.4) - 3.0 * np.sin(0.4)
-    block = make_block(0, PHYSICS, tilted, middle + np.array([-3.0, 3.0]), np.array([2.0]), 900.0, (0.0, 0.0), 0.0, 0.0,
-                       0, 0.4)
+    block = make_block(
+        0, PHYSICS, tilted, middle + np.array([-3.0, 3.0]), np.array([2.0]), 900.0, (0.0, 0.0), 0.0, 0.0, 0, 0.4
+    )
     assert tuple(block.body.position) == pytest.approx((4.0, -3.0))
     assert np.ptp(block.prism.polygon[:, 0]) == pytest.approx(6.0)
     assert abs(np.sin(block.prism.long_axis)) < 1e-12
 
 
-@pytest.mark.parametrize("polygon, cuts, widths, words", [
-    ([(0, 0), (1, 0)], [0, 1], [1], "finite points"),
-    ([(0, 0), (2, 0), (1, 0.2), (0, 2)], [0, 2], [1], "not convex"),
-    ([(0, 0), (2, 0), (2, 1), (0, 1)], [0, 2], [0.0], "widths > 0"),
-    ([(0, 0), (2, 0), (2, 1), (0, 1)], [5, 6], [1.0], "miss the block"),
-])
+@pytest.mark.parametrize(
+    ("polygon", "cuts", "widths", "words"),
+    [
+        ([(0, 0), (1, 0)], [0, 1], [1], "finite points"),
+        ([(0, 0), (2, 0), (1, 0.2), (0, 2)], [0, 2], [1], "not convex"),
+        ([(0, 0), (2, 0), (2, 1), (0, 1)], [0, 2], [0.0], "widths > 0"),
+        ([(0, 0), (2, 0), (2, 1), (0, 1)], [5, 6], [1.0], "miss the block"),
+    ],
+)
 def test_a_bad_block_is_refused(polygon, cuts, widths, words):
     layer = RubbleLayer(PHYSICS, 1.0)
     with pytest.raises(ValueError, match=words):
         layer.add_block(0, np.array(polygon), np.array(cuts), np.array(widths), 900.0, (0, 0), 0.0, 0.0, 0)
 
 
-@pytest.mark.parametrize("change, words", [({"rho_w": 0.0}, "rho_w"), ({"mu_ice_ice": "slow"}, "rate-dependent"),
-                                           ({"backfill": "some"}, "full or none or filling"),
-                                           ({"backfill_level": 1.0}, "z <= 0"), ({"substep": float("nan")}, "substep")])
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"rho_w": 0.0}, "rho_w"),
+        ({"mu_ice_ice": "slow"}, "rate-dependent"),
+        ({"backfill": "some"}, "full or none or filling"),
+        ({"backfill_level": 1.0}, "z <= 0"),
+        ({"substep": float("nan")}, "substep"),
+    ],
+)
 def test_bad_physics_is_refused(change, words):
     with pytest.raises(ValueError, match=words):
         RubblePhysics(**change)

@@ -84,8 +84,10 @@ def test_tables_4_2_to_4_4_and_figure_4_18(beam: CaseResult) -> None:
 
 def test_table_4_3_trends(beam: CaseResult) -> None:
     """f rises with thickness and with a narrower beam, and hardly depends on length and modulus."""
-    f = {name: float(quantity(beam, f"factor f, {name}")) for name in
-         ("base case", "1.5 x length", "2 x thickness", "2 x Young's modulus", "0.5 x width")}
+    f = {
+        name: float(quantity(beam, f"factor f, {name}"))
+        for name in ("base case", "1.5 x length", "2 x thickness", "2 x Young's modulus", "0.5 x width")
+    }
     assert f["0.5 x width"] > f["2 x thickness"] > f["base case"]
     assert f["1.5 x length"] == pytest.approx(f["base case"], rel=0.02)
     assert f["2 x Young's modulus"] == pytest.approx(f["base case"], rel=0.02)

@@ -21,10 +21,13 @@ def first(result, kind):
     return next(e for e in result.events if e.kind == kind)
 
 
-@pytest.mark.parametrize(("case", "fx", "fz", "time"), [
-    ("floe_55m_centre", 3.2e6, 2.7e6, 19.75),  # section 6.4, Figure 6-24; the time is an independent calculation's
-    ("floe_34x68m", 2.7e6, 2.3e6, 18.5),  # section 6.5, Figure 6-30
-])
+@pytest.mark.parametrize(
+    ("case", "fx", "fz", "time"),
+    [
+        ("floe_55m_centre", 3.2e6, 2.7e6, 19.75),  # section 6.4, Figure 6-24; the time is an independent calculation's
+        ("floe_34x68m", 2.7e6, 2.3e6, 18.5),  # section 6.5, Figure 6-30
+    ],
+)
 def test_small_floes_split(case, fx, fz, time):
     split = first(breaking(case, 22), "split")
     assert split.force[0] == pytest.approx(fx, rel=0.05)

@@ -47,8 +47,10 @@ def test_the_envelope_goes_through_both_uniaxial_strengths():
     assert compressive_limit(ICE, np.array(mean)) == pytest.approx(radius, rel=1e-3)  # three digits in (4.4)
 
 
-@pytest.mark.parametrize(("first", "second", "quadrant"), [
-    (2.0, 1.0, 0), (1.0, 0.01, 0), (1.0, -0.01, 1), (0.01, -1.0, 1), (-0.01, -1.0, 2), (-1.0, -1.0, 2)])
+@pytest.mark.parametrize(
+    ("first", "second", "quadrant"),
+    [(2.0, 1.0, 0), (1.0, 0.01, 0), (1.0, -0.01, 1), (0.01, -1.0, 1), (-0.01, -1.0, 2), (-1.0, -1.0, 2)],
+)
 def test_quadrants_follow_the_signs_of_the_principal_stresses(first, second, quadrant):
     circle = np.array([[*circle_of(first, second), *circle_of(first, second)]])
     assert Record(ICE).quadrants(circle)[quadrant] == 2.0

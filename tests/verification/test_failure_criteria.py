@@ -15,8 +15,17 @@ from lattice.stiffness import hrennikoff
 from lattice.strain import CellState, circle, circle_of_connections
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 
-ICE = Ice(E=5e9, nu=1.0 / 3.0, h=1.2, rho_i=900.0, rho_w=1025.0, sigma_t=0.6e6, sigma_f=0.9e6, sigma_c=5e6,
-          beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8))
+ICE = Ice(
+    E=5e9,
+    nu=1.0 / 3.0,
+    h=1.2,
+    rho_i=900.0,
+    rho_w=1025.0,
+    sigma_t=0.6e6,
+    sigma_f=0.9e6,
+    sigma_c=5e6,
+    beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8),
+)
 STRENGTH = Strength(ICE, sigma_spall=-28e6, sigma_f_upward=0.7e6, sigma_f_downward=1.1e6, sigma_shear=0.7e6, K_IC=2e5)
 SPRINGS = hrennikoff(ICE)
 
@@ -33,15 +42,25 @@ def bending(xx: float, yy: float = 0.0, alpha: float = 0.4) -> CellState:
     return cell_in_bending(ICE, SPRINGS, np.array([xx, yy]), alpha, 2.0)
 
 
-@pytest.mark.parametrize("criterion, state, expected", [
-    ("tension", stress(0.6e6, 0.0), 1.0), ("tension", stress(-5e6, 0.0), 1.0), ("compression", stress(-5e6, 0.0), 1.0),
-    ("spalling", stress(-14e6, -14e6), 1.0), ("spalling", stress(-20e6, -8e6), 1.0),
-    ("spalling", stress(1e6, 1e6), -1 / 14),
-    ("bending-top", bending(0.9e6), 1.0), ("bending-bottom", bending(-0.9e6), 1.0),
-    ("downward-bending", bending(1.1e6), 1.0), ("upward-bending", bending(-0.7e6), 1.0),
-    ("combined-tension", bending(0.9e6), 1.0), ("combined-tension", bending(-0.9e6), 1.0),
-    ("combined-tension", stress(0.6e6, 0.0), 1.0), ("combined-compression", stress(-5e6, 0.0), 1.0),
-])
+@pytest.mark.parametrize(
+    ("criterion", "state", "expected"),
+    [
+        ("tension", stress(0.6e6, 0.0), 1.0),
+        ("tension", stress(-5e6, 0.0), 1.0),
+        ("compression", stress(-5e6, 0.0), 1.0),
+        ("spalling", stress(-14e6, -14e6), 1.0),
+        ("spalling", stress(-20e6, -8e6), 1.0),
+        ("spalling", stress(1e6, 1e6), -1 / 14),
+        ("bending-top", bending(0.9e6), 1.0),
+        ("bending-bottom", bending(-0.9e6), 1.0),
+        ("downward-bending", bending(1.1e6), 1.0),
+        ("upward-bending", bending(-0.7e6), 1.0),
+        ("combined-tension", bending(0.9e6), 1.0),
+        ("combined-tension", bending(-0.9e6), 1.0),
+        ("combined-tension", stress(0.6e6, 0.0), 1.0),
+        ("combined-compression", stress(-5e6, 0.0), 1.0),
+    ],
+)
 def test_a_uniaxial_or_equal_load_fails_at_its_strength(criterion: str, state: CellState, expected: float) -> None:
     assert use(criterion, state) == pytest.approx(expected, rel=1e-3)  # the constants of (4.4) have three digits
 
@@ -64,7 +83,8 @@ def test_combined_tension_is_the_criterion_of_the_engine() -> None:
     state = CellState.of(grid, 1e-4 * rng.standard_normal((16, 2)), 1e-4 * rng.standard_normal((16, 3)))
     strains = np.hstack((state.membrane.tensor(), state.bending.tensor()))
     assert CRITERIA["combined-tension"](state, STRENGTH) == pytest.approx(
-        combined_utilisation(strains, ICE.sigma_t, ICE), rel=1e-12)
+        combined_utilisation(strains, ICE.sigma_t, ICE), rel=1e-12
+    )
 
 
 def test_averages_over_connections_are_the_circle_in_a_uniform_state() -> None:

@@ -6,8 +6,9 @@ import pytest
 
 from lattice.properties import FieldMeasurement, beam_strength, brine_volume, ice_from_field, youngs_modulus
 
-KARULINA = FieldMeasurement(thickness=0.39, salinity=2.7, temperature=-1.6, beam_length=2.30, beam_width=0.46,
-                            failure_load=943.0)  # Table 4-2; the load is that of 0.186 MPa in (4.27)
+KARULINA = FieldMeasurement(
+    thickness=0.39, salinity=2.7, temperature=-1.6, beam_length=2.30, beam_width=0.46, failure_load=943.0
+)  # Table 4-2; the load is that of 0.186 MPa in (4.27)
 
 
 def test_brine_and_modulus_of_the_karulina_test() -> None:
@@ -43,7 +44,7 @@ def test_beam_stress_of_the_basin() -> None:
     assert beam_strength(375e3, 18.0, 6.0, 3.0) == pytest.approx(750e3)  # section 6.1
 
 
-@pytest.mark.parametrize("salinity, temperature", [(2.7, -0.2), (2.7, -30.0), (-1.0, -5.0)])
+@pytest.mark.parametrize(("salinity", "temperature"), [(2.7, -0.2), (2.7, -30.0), (-1.0, -5.0)])
 def test_relations_outside_their_range_are_refused(salinity: float, temperature: float) -> None:
     with pytest.raises(ValueError):
         brine_volume(salinity, temperature)

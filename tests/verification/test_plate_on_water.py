@@ -20,12 +20,14 @@ def plate(nx: int, ny: int, ice: Ice = ICE, support: str = "simple", stiffness: 
     return Plate.build(Grid.rectangle(*SIDES, nx, ny), ice, STIFFNESS_SETS[stiffness](ice), all_around(support))
 
 
-@pytest.mark.parametrize("nu, stiffness", [(0.3, "equations-matching"), (1.0 / 3.0, "hrennikoff")])
+@pytest.mark.parametrize(("nu", "stiffness"), [(0.3, "equations-matching"), (1.0 / 3.0, "hrennikoff")])
 def test_eigenfrequencies_converge_at_second_order(nu: float, stiffness: str) -> None:
     ice = Ice(E=3e9, nu=nu, h=1.5, rho_i=900.0, rho_w=1025.0)
     exact = continuum.eigenfrequencies(ice, *SIDES, 4)
-    errors = [np.abs(spectrum.eigenfrequencies(plate(*n, ice=ice, stiffness=stiffness), 4) - exact)
-              for n in ((25, 41), (49, 81))]
+    errors = [
+        np.abs(spectrum.eigenfrequencies(plate(*n, ice=ice, stiffness=stiffness), 4) - exact)
+        for n in ((25, 41), (49, 81))
+    ]
     order = np.log2(errors[0] / errors[1])
     assert np.all((order > 1.8) & (order < 2.2))
 
@@ -51,7 +53,7 @@ def test_clamped_is_stiffer_than_simple_is_stiffer_than_free() -> None:
     assert lowest["free"] < lowest["simple"] < lowest["clamped"]
 
 
-@pytest.mark.parametrize("c, alpha", [(0.0, 0.0), (7000.0, 0.0), (0.0, 1e-2)])
+@pytest.mark.parametrize(("c", "alpha"), [(0.0, 0.0), (7000.0, 0.0), (0.0, 1e-2)])
 def test_forced_response_converges_to_navier_with_both_dampings(c: float, alpha: float) -> None:
     """The part that motion adds to the static response, which has no singularity under the load."""
     load, omega = (20.0, 50.0), 2.0 * np.pi * np.array([0.0, 0.8])
@@ -74,14 +76,18 @@ def typed_in(ice: Ice, d: float, Kx: float, Ky: float) -> np.ndarray:
     diagonal, crossed = 2.0 - np.cos(Kx - Ky) - np.cos(Kx + Ky), np.cos(Kx - Ky) - np.cos(Kx + Ky)
     own_x = 2 * s.G_r_axi * (1 - cx) + 2 * s.G_t_axi * (1 - cy) + s.G_dia * diagonal + s.K_out * D * 0.5 * (1 + cx)
     own_y = 2 * s.G_r_axi * (1 - cy) + 2 * s.G_t_axi * (1 - cx) + s.G_dia * diagonal + s.K_out * D * 0.5 * (1 + cy)
-    H = np.array([[s.K_out * (4 - 2 * cx - 2 * cy) + ice.k_f * D, 1j * s.K_out * d * sx, 1j * s.K_out * d * sy],
-                  [-1j * s.K_out * d * sx, own_x, s.G_dia * crossed],
-                  [-1j * s.K_out * d * sy, s.G_dia * crossed, own_y]])
+    H = np.array(
+        [
+            [s.K_out * (4 - 2 * cx - 2 * cy) + ice.k_f * D, 1j * s.K_out * d * sx, 1j * s.K_out * d * sy],
+            [-1j * s.K_out * d * sx, own_x, s.G_dia * crossed],
+            [-1j * s.K_out * d * sy, s.G_dia * crossed, own_y],
+        ]
+    )
     m = ice.rho_i * ice.h * D * np.array([1.0, ice.h**2 / 12, ice.h**2 / 12])
     return np.sqrt(np.linalg.eigvalsh(H / np.sqrt(np.outer(m, m))))
 
 
-@pytest.mark.parametrize("Kx, Ky", [(0.05, 0.0), (0.7, 1.1), (np.pi, 0.0), (2.0, -2.5)])
+@pytest.mark.parametrize(("Kx", "Ky"), [(0.05, 0.0), (0.7, 1.1), (np.pi, 0.0), (2.0, -2.5)])
 def test_bloch_waves_of_the_assembled_equations_are_those_of_the_thesis(Kx: float, Ky: float) -> None:
     for d in (0.1, 1.0, 10.0):
         ours = Stencil.of_assembled(ICE, equations_matching(ICE), d).dispersion(Kx, Ky)
@@ -93,7 +99,9 @@ def test_only_the_matched_set_has_the_rotational_waves_of_the_plate() -> None:
     theta, d = np.linspace(0.0, 0.5 * np.pi, 13), 0.01
     Kx, Ky = 0.02 * np.cos(theta), 0.02 * np.sin(theta)
     exact = continuum.dispersion(ICE, Kx / d, Ky / d)
-    error = {s.__name__: np.abs(Stencil.of_assembled(ICE, s(ICE), d).dispersion(Kx, Ky) / exact - 1.0).max()
-             for s in (equations_matching, hrennikoff)}
+    error = {
+        s.__name__: np.abs(Stencil.of_assembled(ICE, s(ICE), d).dispersion(Kx, Ky) / exact - 1.0).max()
+        for s in (equations_matching, hrennikoff)
+    }
     assert error["equations_matching"] < 1e-3
     assert error["hrennikoff"] > 1e-2

@@ -24,8 +24,9 @@ def test_the_layer_meets_its_references_in_full(case):
     assert not missed(verify.run(case)[0])
 
 
-@pytest.mark.parametrize("settings", [{"slope": 60.0, "mu": 0.3, "L0": [15.0]},
-                                      {"slope": 50.0, "mu": 0.0, "L0": [8.0]}])
+@pytest.mark.parametrize(
+    "settings", [{"slope": 60.0, "mu": 0.3, "L0": [15.0]}, {"slope": 50.0, "mu": 0.0, "L0": [8.0]}]
+)
 def test_wedge_for_other_slopes_and_frictions(settings):
     result = verify.run("wedge", settings, quick=True)[0]
     assert not missed(result)
@@ -47,16 +48,23 @@ def test_a_real_wedge_has_no_reference_but_values():
     assert dry.value[-1] > 5.0 * flooded.value[-1]
 
 
-@pytest.mark.parametrize("turned, mu", [(30.0, 1.0), (-20.0, 0.1), (10.0, 0.0)])
+@pytest.mark.parametrize(("turned", "mu"), [(30.0, 1.0), (-20.0, 0.1), (10.0, 0.0)])
 def test_oblique_impacts_that_stick_and_slide(turned, mu):
     assert not missed(verify.run("momentum", {"turned": turned, "mu": mu, "offset": -0.2}, quick=True)[0])
 
 
-@pytest.mark.parametrize("case, settings, words", [
-    ("wedge", {"geometry": "cube"}, "plate"), ("float", {"rho_i": 1100.0}, "rho_i < rho_w"),
-    ("float", {"length": 1.0}, "turns over"), ("pusher", {"force": -1.0}, "force > 0"), ("cone", {"y": [0.9]}, "0.85"),
-    ("momentum", {"e": 2.0}, "e <= 1"), ("terminal-velocity", {"rho": [1006.0]}, "other than the water"),
-])
+@pytest.mark.parametrize(
+    ("case", "settings", "words"),
+    [
+        ("wedge", {"geometry": "cube"}, "plate"),
+        ("float", {"rho_i": 1100.0}, "rho_i < rho_w"),
+        ("float", {"length": 1.0}, "turns over"),
+        ("pusher", {"force": -1.0}, "force > 0"),
+        ("cone", {"y": [0.9]}, "0.85"),
+        ("momentum", {"e": 2.0}, "e <= 1"),
+        ("terminal-velocity", {"rho": [1006.0]}, "other than the water"),
+    ],
+)
 def test_parameters_that_make_no_sense_get_one_line(case, settings, words):
     with pytest.raises(ValueError, match=words) as error:
         verify.run(case, settings, quick=True)

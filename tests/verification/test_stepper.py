@@ -61,7 +61,7 @@ def modal(damping: float, force: np.ndarray, T: float) -> np.ndarray:
     return np.asarray(modes @ (a * T / omega2 - damping * a / omega2**2 + free)) / np.sqrt(M)
 
 
-@pytest.mark.parametrize("damping, order", [(0.0, 2.0), (0.8, 1.0)])
+@pytest.mark.parametrize(("damping", "order"), [(0.0, 2.0), (0.8, 1.0)])
 def test_order_of_the_stepper(damping: float, order: float) -> None:
     """Second order; the damping force, taken half a step late, adds an error of first order in dt x damping."""
     C, none = sp.diags(damping * M).tocsr(), np.zeros(len(M))

@@ -1,0 +1,112 @@
+"""A compiled kernel never outlives the sources that it was compiled from, those of kernels that it calls included."""
+
+from __future__ import annotations
+
+import ast
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+COPIES = ("lattice", "rubble", "coupling")
+DECORATORS = {"njit", "jit", "cfunc", "vectorize", "guvectorize"}  #: numba's own, with its own cache
+INNER = "from {package}.compiled import {decorator}\n\n\n@{decorator}({options})\ndef weight():\n    return {value}\n"
+OUTER = (
+    "from {package}.compiled import {decorator}\nfrom {package}.inner import weight\n\n\n@{decorator}({options})\n"
+    "def total(n):\n    return n * weight()\n"
+)
+
+
+def write(package: Path, value: float, *, keyed: bool) -> None:
+    """A package of two kernels in two files, with the project's `compiled` or with numba's own cache."""
+    package.mkdir(exist_ok=True)
+    (package / "__init__.py").touch()
+    shutil.copy(ROOT / "lattice" / "compiled.py", package / "compiled.py")
+    words = {
+        "package": package.name,
+        "decorator": "compiled" if keyed else "njit",
+        "options": '"float64()"' if keyed else '"float64()", cache=True',
+        "value": value,
+    }
+    (package / "inner.py").write_text(INNER.format(**words))
+    (package / "outer.py").write_text(OUTER.format(**words).replace("float64()", "float64(float64)"))
+
+
+def run(package: Path) -> float:
+    """What the outer kernel gives in a new process."""
+    code = f"from {package.name}.outer import total; print(total(10.0))"
+    done = subprocess.run([sys.executable, "-c", code], cwd=package.parent, capture_output=True, text=True, check=True)
+    return float(done.stdout)
+
+
+def test_an_edit_of_an_inner_kernel_is_seen_by_the_outer_one(tmp_path):
+    package = tmp_path / "ours"
+    write(package, 2.0, keyed=True)
+    assert run(package) == 20.0
+    write(package, 3.0, keyed=True)
+    assert run(package) == 30.0
+
+
+def test_with_numbas_own_cache_it_is_not(tmp_path):
+    """The wrong twin: the outer kernel, whose own file is unchanged, goes on with the old inner one."""
+    package = tmp_path / "stale"
+    write(package, 2.0, keyed=False)
+    assert run(package) == 20.0
+    (package / "inner.py").write_text((package / "inner.py").read_text().replace("2.0", "3.0"))
+    assert run(package) == 20.0
+
+
+def test_an_edit_in_a_copy_of_the_rubble_reaches_the_kernels_that_call_it(tmp_path):
+    """`crushing._cut_depth` calls `geometry.moments` of another file through no file of its own that changes."""
+    shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
+    geometry = tmp_path / "rubble" / "geometry.py"
+    code = (
+        "import numpy as np; from rubble.geometry import submerged; "
+        "print(submerged(np.array([[0., -1.], [1., -1.], [1., 1.], [0., 1.]]))[:, 1].max())"
+    )
+
+    def top() -> float:
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+        return float(done.stdout)
+
+    assert top() == 0.0
+    text = geometry.read_text()
+    assert "clip(polygon, 0.0, 1.0, 0.0)" in text
+    geometry.write_text(text.replace("clip(polygon, 0.0, 1.0, 0.0)", "clip(polygon, 0.0, 1.0, 0.5)"))
+    assert top() == 0.5
+
+
+@pytest.mark.parametrize("package", COPIES)
+def test_the_copies_are_equal(package):
+    assert (ROOT / package / "compiled.py").read_bytes() == (ROOT / "lattice" / "compiled.py").read_bytes()
+
+
+def test_every_kernel_is_compiled_this_way():
+    for package in (*COPIES, "cosim"):
+        for file in (ROOT / package).rglob("*.py"):
+            if file.name == "compiled.py":
+                continue
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+                names = [alias.name for alias in node.names] if isinstance(node, ast.ImportFrom | ast.Import) else []
+                assert not {"njit", "jit", "cfunc", "vectorize", "guvectorize"} & set(names), (
+                    f"{file}: use {package}.compiled"
+                )
+
+
+def test_old_folders_go(tmp_path, monkeypatch):
+    from lattice import compiled
+
+    monkeypatch.setattr(compiled.config, "CACHE_DIR", str(tmp_path / "cache"))
+    package = tmp_path / "thing"
+    package.mkdir()
+    seen = []
+    for k in range(6):
+        (package / "a.py").write_text(f"x = {k}\n")
+        seen.append(compiled.cache_folder(package))
+    assert len(set(seen)) == 6
+    assert sum(folder.is_dir() for folder in seen) == compiled.KEPT + 1
+    assert seen[-1].is_dir()
+    assert compiled.cache_folder(package) == seen[-1]
