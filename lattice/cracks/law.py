@@ -1,0 +1,152 @@
+"""The law of one layer of a cracked cell, in the axes of its crack: n across the crack, t along it.
+
+A layer that is whole is elastic in plane stress. Across each of the two axes it may crack: the compliance of that axis
+grows by the damage D, but in tension only, so that a crack that closes carries like whole ice:
+
+    eps_n = sigma_n / (E a_n) - nu sigma_t / E,    a_n = 1 - D_n where sigma_n > 0, else 1;    eps_t likewise.
+
+D follows from the strain q = sigma_n / (E a_n), what the stress of the other axis adds taken off, such that the stress
+goes down on a straight line from sigma_t at e_0 = sigma_t / E to zero at e_f = w_c / d, w_c = 2 G_f / sigma_t: a
+cohesive crack of fracture energy G_f in series with the elastic cell of size d (Hillerborg et al. 1976, Bazant and Oh 1983).
+In compression the stress stays above -sigma_c; beyond it ice is crushed, a strain that stays. Shear along a crack is
+limited by what is left of the cohesion c and by Coulomb friction, and the slip stays:
+
+    |tau| <= (1 - D) c + mu |sigma_n|.
+
+The law returns what each of the three took: crushing sigma_c times its strain, slip the limit times its way, damage the
+energy that it lowers at constant strain.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from lattice.compiled import compiled
+
+
+class CrackLaw(NamedTuple):
+    """Constants of the law, all layers and cells alike."""
+
+    E: float  #: Young's modulus [Pa]
+    nu: float  #: Poisson's ratio [-]
+    sigma_c: float  #: compressive strength [Pa]
+    cohesion: float  #: shear strength of whole ice [Pa]
+    mu: float  #: friction of the faces of a crack [-]
+    e_0: float  #: strain sigma_t / E at which a layer begins to crack [-]
+    e_f: float  #: strain at which its crack carries no tension any more, w_c / d, at least e_0: brittle [-]
+
+
+class Layer(NamedTuple):
+    """What a layer carries and how it answers to small strains while nothing in it cracks, crushes or slips."""
+
+    s_n: float  #: stress across the crack [Pa]
+    s_t: float  #: stress along it [Pa]
+    tau: float  #: shear stress [Pa]
+    nn: float  #: d s_n / d eps_n [Pa]
+    nt: float  #: d s_n / d eps_t = d s_t / d eps_n [Pa]
+    tt: float  #: d s_t / d eps_t [Pa]
+    gg: float  #: d tau / d gamma [Pa]
+    slip: float  #: plastic part of gamma [-]
+    stored: float  #: elastic energy [J/m3]
+    cracking: float  #: energy that growing damage took [J/m3]
+    crushing: float  #: energy that crushing took [J/m3]
+    rubbing: float  #: energy that slip took [J/m3]
+
+
+@compiled(inline="always")
+def damage_of(q, law):
+    """Damage at the strain q > e_0 across a crack: linear softening."""
+    if q >= law.e_f:
+        return 1.0
+    return 1.0 - law.e_0 / q * (law.e_f - q) / (law.e_f - law.e_0)
+
+
+@compiled(inline="always")
+def stiffness_shares(x_n, x_t, D_n, D_t, nu):
+    """(a_n, a_t) of the law at the elastic strains (x_n, x_t): 1 - D where the stress is tension, else 1."""
+    a_n, a_t = 1.0, 1.0
+    for _ in range(2):
+        a_n = 1.0 - D_n if x_n + nu * a_t * x_t > 0.0 else 1.0
+        a_t = 1.0 - D_t if x_t + nu * a_n * x_n > 0.0 else 1.0
+    return a_n, a_t
+
+
+@compiled(inline="always")
+def normal_energy(s_n, s_t, a_n, a_t, law):
+    """Elastic energy of the normal stresses [J/m3]; a crack without stiffness stores none."""
+    stored = -law.nu * s_n * s_t / law.E
+    if a_n > 0.0:
+        stored += 0.5 * s_n * s_n / (law.E * a_n)
+    if a_t > 0.0:
+        stored += 0.5 * s_t * s_t / (law.E * a_t)
+    return stored
+
+
+@compiled(inline="always")
+def tension(x_n, x_t, damage, law):
+    """Stresses at elastic strains; ``damage`` (2,) grows as the law asks. Also (a_n, a_t) and the energy it took."""
+    nu = law.nu
+    a_n, a_t = stiffness_shares(x_n, x_t, damage[0], damage[1], nu)
+    f = law.E / (1.0 - nu * nu * a_n * a_t)
+    s_n, s_t = f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n)
+    q_n, q_t, took = x_n + nu * s_t / law.E, x_t + nu * s_n / law.E, 0.0
+    D_n = max(damage[0], damage_of(q_n, law) if q_n > law.e_0 else 0.0)
+    D_t = max(damage[1], damage_of(q_t, law) if q_t > law.e_0 else 0.0)
+    if D_n > damage[0] or D_t > damage[1]:
+        took = normal_energy(s_n, s_t, a_n, a_t, law)
+        damage[0], damage[1] = D_n, D_t
+        a_n, a_t = stiffness_shares(x_n, x_t, D_n, D_t, nu)
+        f = law.E / (1.0 - nu * nu * a_n * a_t)
+        s_n, s_t = f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n)
+        took -= normal_energy(s_n, s_t, a_n, a_t, law)
+    return s_n, s_t, a_n, a_t, took
+
+
+@compiled(inline="always")
+def crushing_of(x_n, x_t, a_n, a_t, law):
+    """Stresses of a layer that is crushed, and the strain by which it is: across n, across t, else across both.
+
+    The stress returns to the box of both strengths by the shortest way in energy (associated flow), which is along the
+    axis whose stress alone, brought back, leaves the other one inside and crushes, not stretches.
+    """
+    c, nu, E = law.sigma_c, law.nu, law.E
+    s_t = E * a_t * x_t - nu * a_t * c
+    p_n = x_n + (c + nu * s_t) / E
+    if s_t >= -c and p_n <= 0.0:
+        return -c, s_t, p_n, 0.0
+    s_n = E * a_n * x_n - nu * a_n * c
+    p_t = x_t + (c + nu * s_n) / E
+    if s_n >= -c and p_t <= 0.0:
+        return s_n, -c, 0.0, p_t
+    return -c, -c, x_n + (1.0 - nu) * c / E, x_t + (1.0 - nu) * c / E
+
+
+@compiled(error_model="numpy")
+def layer(eps_n, eps_t, gamma, damage, crushed, slip, law):
+    """A layer at these strains. ``damage`` and ``crushed`` (2,) for n and t are its states, which follow in place."""
+    E, nu = law.E, law.nu
+    s_n, s_t, a_n, a_t, cracking = tension(eps_n - crushed[0], eps_t - crushed[1], damage, law)
+    f = E / (1.0 - nu * nu * a_n * a_t)
+    nn, nt, tt, crushing = f * a_n, f * nu * a_n * a_t, f * a_t, 0.0
+    if s_n < -law.sigma_c or s_t < -law.sigma_c:
+        s_n, s_t, p_n, p_t = crushing_of(eps_n - crushed[0], eps_t - crushed[1], a_n, a_t, law)
+        crushing = -law.sigma_c * (p_n + p_t)
+        crushed[0], crushed[1] = crushed[0] + p_n, crushed[1] + p_t
+        nn, nt, tt = 0.0 if p_n < 0.0 else E * a_n, 0.0, 0.0 if p_t < 0.0 else E * a_t
+    G = 0.5 * E / (1.0 + nu)
+    tau, gg, rubbing = G * (gamma - slip), G, 0.0
+    if damage[0] > 0.0 or damage[1] > 0.0:
+        limit = math.inf
+        if damage[0] > 0.0:
+            limit = (1.0 - damage[0]) * law.cohesion + law.mu * max(-s_n, 0.0)
+        if damage[1] > 0.0:
+            limit = min(limit, (1.0 - damage[1]) * law.cohesion + law.mu * max(-s_t, 0.0))
+        if abs(tau) > limit:
+            new = math.copysign(limit, tau)
+            moved = (tau - new) / G
+            if cracking > 0.0:  # shear that a new crack lets go at once
+                cracking += 0.5 * G * moved * moved
+            slip, rubbing, gg, tau = slip + moved, new * moved, 0.0, new
+    stored = normal_energy(s_n, s_t, a_n, a_t, law) + 0.5 * tau * tau / G
+    return Layer(s_n, s_t, tau, nn, nt, tt, gg, slip, stored, cracking, crushing, rubbing)

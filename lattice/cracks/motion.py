@@ -1,0 +1,101 @@
+"""Layered cells in the sub-steps of the explicit engine."""
+
+from __future__ import annotations
+
+from lattice.compiled import compiled
+from lattice.cracks.cells import MOVED, elongations, evaluate, gradients, turned, turned_back
+
+
+@compiled(inline="always")
+def moved(k, my, y, plate, law, cracks):
+    """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
+    b, q, half, s = cracks.corner[k], 0.5 / plate.d, 0.5 * plate.h, cracks.seen
+    far = MOVED * law.e_0
+    xx, xy, _ = gradients(b, my, q, y[0])
+    yx, yy, _ = gradients(b, my, q, y[1])
+    px, py, _ = gradients(b, my, q, y[3])
+    rx, ry, _ = gradients(b, my, q, y[4])
+    a = abs(xx - s[0, k]) + half * abs(px - s[3, k])
+    c = abs(yy - s[1, k]) + half * abs(ry - s[4, k])
+    g = abs(xy + yx - s[2, k]) + half * abs(py + rx - s[5, k])
+    return a > far or c > far or g > far
+
+
+@compiled(nogil=True)
+def renew(count, my, y, v, alpha, scratch, plate, law, cracks):
+    """Evaluates the law in every cell whose strain has moved; displacements are y - alpha v."""
+    evaluated = 0
+    q = 0.5 / plate.d
+    for k in range(count):
+        if moved(k, my, y, plate, law, cracks):
+            evaluate_at(k, my, y, v, alpha, scratch, q, plate, law, cracks)
+            evaluated += 1
+    return evaluated
+
+
+@compiled(nogil=True)
+def evaluate_at(k, my, y, v, alpha, x, q, plate, law, cracks):
+    """Evaluates the law in cell k at y - alpha v, of which ``x`` (5, nodes) takes the four nodes."""
+    b = cracks.corner[k]
+    for c in range(5):
+        for n in (b, b + my, b + 1, b + my + 1):
+            x[c, n] = y[c, n] - alpha * v[c, n]
+    s = cracks.seen
+    s[0, k], xy, _ = gradients(b, my, q, y[0])
+    yx, s[1, k], _ = gradients(b, my, q, y[1])
+    s[3, k], py, _ = gradients(b, my, q, y[3])
+    rx, s[4, k], _ = gradients(b, my, q, y[4])
+    s[2, k], s[5, k] = xy + yx, py + rx
+    return evaluate(k, x, my, plate, law, cracks)
+
+
+@compiled(nogil=True)
+def crack_forces(count, my, y, plate, cracks):
+    """Forces of the first ``count`` cells on their nodes at the effective displacements y (5, nodes)."""
+    q, half, f = 0.5 / plate.d, 0.5 * plate.d, 0.5 * plate.d
+    H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
+    m, u, p, o, F = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset, cracks.force
+    for k in range(count):
+        b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
+        xx, xy, hx = gradients(b, my, q, y[0])
+        yx, yy, hy = gradients(b, my, q, y[1])
+        px, py, tx = gradients(b, my, q, y[3])
+        rx, ry, ty = gradients(b, my, q, y[4])
+        en, et, eg = turned(xx, yy, xy + yx, c, s)
+        kn, kt, kg = turned(px, ry, py + rx, c, s)
+        Nn = o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt
+        Nt = o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt
+        Ng = o[2, k] + m[3, k] * eg + u[3, k] * kg
+        Mn = o[3, k] + u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt
+        Mt = o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt
+        Mg = o[5, k] + u[3, k] * eg + p[3, k] * kg
+        N1, N2, N3 = turned_back(Nn, Nt, Ng, c, s)
+        M1, M2, M3 = turned_back(Mn, Mt, Mg, c, s)
+        l0, l1, l2, l3 = elongations(b, my, half, y)
+        Q0, Q1 = cracks.held[0, k] + cracks.stiff[0, k] * l0, cracks.held[1, k] + cracks.stiff[1, k] * l1
+        Q2, Q3 = cracks.held[2, k] + cracks.stiff[2, k] * l2, cracks.held[3, k] + cracks.stiff[3, k] * l3
+        # nodes 0 (-, -), 1 (+, -), 2 (-, +), 3 (+, +)
+        F[0, k], F[5, k] = f * (N1 + N3 - H * hx), f * (-N1 + N3 + H * hx)
+        F[10, k], F[15, k] = f * (N1 - N3 + H * hx), f * (-N1 - N3 - H * hx)
+        F[1, k], F[6, k] = f * (N2 + N3 - H * hy), f * (N2 - N3 + H * hy)
+        F[11, k], F[16, k] = f * (-N2 + N3 + H * hy), f * (-N2 - N3 - H * hy)
+        F[2, k], F[7, k], F[12, k], F[17, k] = Q0 + Q2, Q3 - Q0, Q1 - Q2, -Q1 - Q3
+        F[3, k], F[8, k] = f * (M1 + M3 - R * tx - Q0), f * (-M1 + M3 + R * tx - Q0)
+        F[13, k], F[18, k] = f * (M1 - M3 + R * tx - Q1), f * (-M1 - M3 - R * tx - Q1)
+        F[4, k], F[9, k] = f * (M2 + M3 - R * ty - Q2), f * (M2 - M3 + R * ty - Q3)
+        F[14, k], F[19, k] = f * (-M2 + M3 + R * ty - Q2), f * (-M2 - M3 - R * ty - Q3)
+
+
+@compiled(nogil=True)
+def give(count, my, ny, kick, go, y, v, cracks):
+    """Adds the forces of `crack_forces` to a sub-step that has been made; kick (3, nodes) in rows of ny."""
+    F = cracks.force
+    for k in range(count):
+        b = cracks.corner[k]
+        i, j = b // my, b % my
+        at = i * ny + j
+        for n, g, r in ((b, at, 0), (b + my, at + ny, 5), (b + 1, at + 1, 10), (b + my + 1, at + ny + 1, 15)):
+            for c in range(5):
+                dv = kick[max(0, min(c - 1, 2)), g] * F[r + c, k]
+                v[c, n] += dv
+                y[c, n] += go * dv
