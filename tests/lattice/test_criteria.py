@@ -165,7 +165,7 @@ def test_the_explicit_engine_finds_an_overload_within_a_block():
 def test_a_missing_strength_is_named(engine):
     ice = replace(ICE, sigma_shear=np.inf)
     sheet(engine, ice=ice)
-    with pytest.raises(ValueError, match="sigma_shear is missing.*out-of-plane-shear"):
+    with pytest.raises(ValueError, match=r"sigma_shear is missing.*out-of-plane-shear"):
         sheet(engine, chosen(["combined-tension", "out-of-plane-shear"]), ice)
 
 
