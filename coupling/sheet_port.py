@@ -27,9 +27,12 @@ from coupling.interface import (
 )
 from coupling.structure import Structure
 from coupling.yielding import oscillator
-from lattice.engine import State, StepError
+from lattice.contact import edge_displacement
+from lattice.floe import Floe
+from lattice.loads import NodeLoad
 from lattice.memory import Memory, recall, remember
-from lattice.sheet import Outcome, Sheet, edge_displacement
+from lattice.outcome import Outcome
+from lattice.state import State, StepError
 
 Motion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity (n, 2) of nodes
 
@@ -51,7 +54,7 @@ class SheetPort:
 
     def __init__(
         self,
-        sheet: Sheet,
+        sheet: Floe,
         structure: Structure,
         law: ContactLaw,
         velocity: float,
@@ -94,10 +97,9 @@ class SheetPort:
         self._t, self._fragments, self._at_structure = t_ns / NS, [], []
         self._start = self._t, self.sheet.state
         self.sheet.set_window(window_ns / NS)
-        force_u, force_q = self._forces(rubble)
-        parts = self.sheet.parts
+        loads, parts = self._loads(rubble), self.sheet.parts
         try:
-            out = self.sheet.advance(self._t, force_u, force_q, self.contact, self._release)
+            out = self.sheet.advance(self._t, loads, self.contact, self._release)
         except (StepError, FloatingPointError) as error:
             raise SimulationError(f"t = {self._t:.3f} s: {error}") from error
         load = -out.contact_mean.sum(axis=0)
@@ -113,7 +115,7 @@ class SheetPort:
             "drag": r.drag,
             "inertia": r.inertia,
             "held": r.held,
-            "staggering": r.applied,
+            "staggering": r.applied.get("rubble", (0.0, 0.0)),
         }
         return SheetReport(load, self._fragments, events, budget)
 
@@ -131,17 +133,17 @@ class SheetPort:
         _, way = self._way(rubble.nodes[on])
         return float((rubble.force[on] * way).sum()) / (self._t - self._start[0])
 
-    def _forces(self, rubble: SheetForces) -> tuple[Array, Array]:
-        """The rubble's forces on all nodes: in plane (n, 2), and w with its rotations (n, 3)."""
+    def _loads(self, rubble: SheetForces) -> list[NodeLoad]:
+        """The external forces on the lattice: those of the rubble."""
         n = self.sheet.grid.nodes
         force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
         force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
-        return force_u, force_q
+        return [NodeLoad("rubble", force_u, force_q)]
 
     def rest_under(self, rubble: SheetForces) -> None:
         """Starts the run in equilibrium with rubble that lies under the sheet, its edge just touching the structure."""
         try:
-            self.sheet.rest_under(*self._forces(rubble))
+            self.sheet.rest_under(self._loads(rubble))
         except StepError as error:
             raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
         y = edge_displacement(self.sheet.state, self.contact.nodes, self.contact.height)
@@ -256,7 +258,7 @@ class SheetPort:
         crushed = e.crushed.elastic + e.crushed.foundation + e.crushed.kinetic_at(v)
         return {
             "drift_work": v * e.hold,
-            "received_work": e.others.work + v * e.others.push,
+            "received_work": e.received_at(v),
             "sheet_elastic": e.now.elastic,
             "sheet_foundation": e.now.foundation,
             "sheet_kinetic": e.now.kinetic_at(v),
@@ -270,7 +272,7 @@ class SheetPort:
             "left_foundation": e.pieces.foundation,
             "left_kinetic": e.pieces.kinetic_at(v),
             "contact_work": e.contact,
-            "rubble_work": e.rubble,
+            "rubble_work": e.received,
             "sheet_energy_residual": e.residual,
         }
 

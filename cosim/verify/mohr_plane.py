@@ -18,12 +18,15 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from cosim.build import build
-from cosim.scenario import Scenario, ScenarioError, load_scenario
+from cosim.scenario.errors import ScenarioError
+from cosim.scenario.loading import load_scenario
+from cosim.scenario.scenario import Scenario
 from cosim.verify.case import CaseResult, Quantity, at_most, near, value
 from cosim.verify.mohr_figure import mohr_figure
 from cosim.verify.mohr_record import Record, Witness
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
+from lattice.sheet import Sheet
 
 PARAMETERS: dict[str, Any] = {"floe": "all"}
 
@@ -92,6 +95,7 @@ def _witness(scheduler: Scheduler) -> Witness:
     """The sheet of a run, exchanged for one that keeps the states in which its cells fail."""
     port = scheduler.sheet
     assert isinstance(port, SheetPort)
+    assert isinstance(port.sheet, Sheet)
     sheet = Witness.of(port.sheet)
     port.sheet = sheet
     return sheet

@@ -28,16 +28,17 @@ import coupling.scheduler
 import lattice.sheet
 import rubble.layer
 from cosim.build import build, run_info
-from cosim.recording import Recorder
-from cosim.scenario import load_scenario
+from cosim.recording.writer import Recorder
+from cosim.scenario.loading import load_scenario
 from coupling.contact import OverlapContact
 from coupling.ledger import Ledger
 from coupling.rubble_port import RubblePort
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
 from lattice.energy import EnergyBooks
-from lattice.engine import Engine
-from lattice.linear import CrackedSystem
+from lattice.implicit.edge import Edge
+from lattice.implicit.engine import Engine
+from lattice.implicit.linear import CrackedSystem
 from lattice.sheet import Sheet
 from rubble.contacts import accumulate
 from rubble.layer import RubbleLayer
@@ -57,7 +58,7 @@ DOORS = {
     "edge contact": [
         (OverlapContact, "evaluate"),
         (OverlapContact, "settle"),
-        (Engine, "_contact_force"),
+        (Edge, "force"),
         (SheetPort, "_crush"),
     ],
     "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_fragment"), (SheetPort, "_renew_edge")],
