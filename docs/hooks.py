@@ -19,11 +19,11 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from cosim.scenario import ScenarioModel
-from cosim.units import Unit
+from cosim.scenario.model import ScenarioModel
+from cosim.scenario.units import Unit
 
 MARKER = "<!-- scenario reference -->"
-HEAD = "| key | unit | value | default | meaning |\n|---|---|---|---|---|\n"
+HEAD = "| key | unit | written as | default | meaning |\n|---|---|---|---|---|\n"
 ROOT = Path(__file__).parents[1]
 
 
@@ -68,6 +68,7 @@ def _model_of(annotation: Any) -> type[BaseModel] | None:
 
 def _section(name: str, model: type[BaseModel]) -> str:
     about = re.sub(r"^\[[\w.]+\]\s*", "", " ".join((model.__doc__ or "").split()))
+    about = about[:1].upper() + about[1:]
     words = meanings(model)
     rows = []
     for key, field in model.model_fields.items():
@@ -76,7 +77,8 @@ def _section(name: str, model: type[BaseModel]) -> str:
         if not words.get(key):
             raise ValueError(f"scenario key {name}.{key} has no meaning: write a comment #: beside it in {model}")
         unit = _unit(field)
-        cells = (f"`{key}`", unit.si if unit else "-", _value(field), _default(field), _cell(words[key]))
+        words_of_key = re.sub(r"\s*\[[^\]]*\]$", "", words[key]) if unit else words[key]
+        cells = (f"`{key}`", unit.si if unit else "-", _value(field), _default(field), _cell(words_of_key))
         rows.append("| " + " | ".join(cells) + " |\n")
     return f"## [{name}]\n\n{about}\n\n{HEAD}{''.join(rows)}"
 
