@@ -119,7 +119,7 @@ class EnergyBooks:
     @property
     def residual(self) -> float:
         """Energy that no term explains [J]."""
-        spent = self.damping + self.scheme + self.fracture + self.handed_over
+        spent = self.damping + self.scheme + self.fracture + self.handed_over + sum(self.engine.crack_losses.values())
         return self.contact + self.received - spent - self.stored
 
     def springs(self, u: Array, q: Array, live: BoolArray) -> float:
@@ -138,14 +138,14 @@ class EnergyBooks:
         """Takes stock of a state."""
         self.now = self._stock(s, live, present)
 
-    def _stock(self, s: State, live: BoolArray, present: BoolArray) -> Stock:
-        mass = self.engine.M_u
+    def _stock(self, s: State, live: BoolArray, present: BoolArray, leaving: BoolArray | None = None) -> Stock:
+        e = self.engine
         return Stock(
-            self.springs(s.u, s.q, live),
+            self.springs(s.u, s.q, live) + e.layered_energy(s.u, s.q, leaving),
             self._foundation(s.q, present),
             self._kinetic(s, present),
-            float(momentum_of(mass, s.u_dot, present)),
-            float(mass[::2][present].sum()),
+            float(momentum_of(e.inertia_u, s.u_dot, present)),
+            float(e.M_u[::2][present].sum()),
         )
 
     def holding(self, u: Array, u_dot: Array, force_u: Array, live: BoolArray) -> float:
@@ -156,7 +156,9 @@ class EnergyBooks:
 
     def _kinetic(self, s: State, present: BoolArray) -> float:
         e = self.engine
-        return 0.5 * float(weighted_square(e.M_u, s.u_dot, present) + weighted_square(e.M_q, s.q_dot, present))
+        return 0.5 * float(
+            weighted_square(e.inertia_u, s.u_dot, present) + weighted_square(e.inertia_q, s.q_dot, present)
+        )
 
     def _foundation(self, q: Array, present: BoolArray) -> float:
         return 0.5 * float(weighted_square(self.engine.k_f, q, present))
@@ -207,4 +209,4 @@ class EnergyBooks:
         """Books ice that leaves with all its energy; ``cells`` is the mask of its live cells."""
         mask = np.zeros(self.engine.grid.nodes, bool)
         mask[nodes] = True
-        (self.crushed if crushed else self.pieces).add(self._stock(s, cells, mask))
+        (self.crushed if crushed else self.pieces).add(self._stock(s, cells, mask, mask))

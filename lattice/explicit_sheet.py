@@ -11,6 +11,7 @@ the end of each block of sub-steps between two evaluations of the contact (`Expl
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -59,18 +60,25 @@ class ExplicitSheet(Floe):
         step: float | None = None,
         contact_time: float = CONTACT_TIME,
         criteria: tuple[Criterion, ...] = THESIS,
+        engine: Callable[..., ExplicitEngine] = ExplicitEngine,
     ):
-        """As `Sheet`; ``step`` is the largest sub-step [s] (default: a share of the critical one)."""
-        engine = ExplicitEngine(grid, ice, springs, dt, held_in_plane=held, damping=damping, alpha=alpha, step=step)
-        super().__init__(engine, dt, held=held, share=share, criteria=criteria)
+        """As `Sheet`; ``step`` is the largest sub-step [s] (default: a share of the critical one).
+
+        ``engine`` makes the engine, see there.
+        """
+        made = engine(grid, ice, springs, dt, held_in_plane=held, damping=damping, alpha=alpha, step=step)
+        super().__init__(made, dt, held=held, share=share, criteria=criteria)
         self._contact_time = contact_time
-        self.block = max(1, int(contact_time / engine.dt))  #: sub-steps between two evaluations of the contact
+        self.block = max(1, int(contact_time / made.dt))  #: sub-steps between two evaluations of the contact
         self._screened = any(c.judge is combined_tension for c in criteria)  #: the loop stops at an overloaded cell
         self._others = any(c.judge is not combined_tension for c in criteria)  #: blocks are judged at their end
         self._lively, self._loss_rate = True, 0.0
         self._easing = Easing(grid.cells, ice.sigma_t)
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
         self.failed_cells: list[int] = []  #: which they were
+
+    def let_go(self, t: float, contact: EdgeContact, out: Outcome, release: Release) -> None:
+        """Lets pieces go that have come loose without a new failure; nothing here."""
 
     def set_window(self, dt: float) -> None:
         """As `Floe.set_window`; the sub-steps are cut anew."""
@@ -87,6 +95,8 @@ class ExplicitSheet(Floe):
         keep(loads, self.present)
         start, present, out = self.state, self.present.copy(), Outcome()
         window = Window.empty(start, loads)
+        self.let_go(t, contact, out, release)
+        keep(loads, self.present)
         self._begin(t, loads, contact)
         done = 0
         while done < self.engine.sub_steps:

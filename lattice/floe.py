@@ -134,6 +134,11 @@ class Floe(ABC):
         return self.standing.live
 
     @property
+    def joins(self) -> BoolArray:
+        """Cells that hold their nodes together, (cells,)."""
+        return self.intact
+
+    @property
     def front(self) -> IntArray:
         """Row of the foremost node of each column, -1 where there is none."""
         return front_rows(self.grid, self.present)
@@ -161,7 +166,7 @@ class Floe(ABC):
 
     def _release_loose(self, out: Outcome, release: Release, turned: BoolArray | None = None) -> None:
         """Lets pieces go that nothing holds, and those of which every node has ``turned`` (nodes,)."""
-        pieces, self.parts = loose_pieces(self.grid, self.intact, self.present, self.held, self.share, turned)
+        pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share, turned)
         for piece in pieces:
             live = self.live_cells
             self.present[piece] = False

@@ -127,9 +127,27 @@ def tangent_energy(k, en, et, eg, kn, kt, kg, cracks):
     return E
 
 
+@compiled(inline="always")
+def resultants(k, en, et, eg, kn, kt, kg, cracks):
+    """N and M of the linear cell at a strain, in the axes of its crack [N/m], [N]."""
+    m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
+    return (
+        o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt,
+        o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt,
+        o[2, k] + m[3, k] * eg + u[3, k] * kg,
+        o[3, k] + u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt,
+        o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt,
+        o[5, k] + u[3, k] * eg + p[3, k] * kg,
+    )
+
+
 @compiled(error_model="numpy")
-def evaluate(k, x, my, plate, law, cracks):
-    """Evaluates the law in cell k at the displacements x (5, nodes); the cell goes on with a new tangent."""
+def evaluate(k, x, way, my, plate, law, cracks):
+    """Evaluates the law in cell k at the displacements x (5, nodes); the cell goes on with a new tangent.
+
+    ``way`` (5, nodes) is how far the nodes have come in the last sub-step. What leapfrog conserves has x of this and of
+    the last sub-step in its elastic energy, so a force that changes by df takes df . way / 2 beside the energy at x.
+    """
     d, h, q = plate.d, plate.h, 0.5 / plate.d
     b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
     xx, xy, _ = gradients(b, my, q, x[0])
@@ -143,6 +161,7 @@ def evaluate(k, x, my, plate, law, cracks):
     for i in range(4):
         before += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
     m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
+    old = resultants(k, en, et, eg, kn, kt, kg, cracks)
     for i in range(4):
         m[i, k] = u[i, k] = p[i, k] = 0.0
     Nn = Nt = Ng = Mn = Mt = Mg = hold_n = hold_t = push_n = push_t = stored = 0.0
@@ -181,6 +200,12 @@ def evaluate(k, x, my, plate, law, cracks):
     if broken_t:
         limit = min(limit, hold_t + law.mu * push_t)
     stored, rubbing = d * d * stored, d * d * rubbing
+    was = (
+        cracks.held[0, k] + cracks.stiff[0, k] * long[0],
+        cracks.held[1, k] + cracks.stiff[1, k] * long[1],
+        cracks.held[2, k] + cracks.stiff[2, k] * long[2],
+        cracks.held[3, k] + cracks.stiff[3, k] * long[3],
+    )
     after = d * d * tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
     for i in range(4):
         Q, K = plate.shear * (long[i] - cracks.shear_slip[k, i]), plate.shear
@@ -193,6 +218,17 @@ def evaluate(k, x, my, plate, law, cracks):
         cracks.stiff[i, k], cracks.held[i, k] = K, Q - K * long[i]
         after += (0.5 * K * long[i] + cracks.held[i, k]) * long[i]
     cracks.constant[k] = stored - after
+    xx, xy, _ = gradients(b, my, q, way[0])
+    yx, yy, _ = gradients(b, my, q, way[1])
+    px, py, _ = gradients(b, my, q, way[3])
+    rx, ry, _ = gradients(b, my, q, way[4])
+    dn, dt, dg = turned(xx, yy, xy + yx, c, s)
+    before += 0.5 * d * d * ((Nn - old[0]) * dn + (Nt - old[1]) * dt + (Ng - old[2]) * dg)
+    dn, dt, dg = turned(px, ry, py + rx, c, s)
+    before += 0.5 * d * d * ((Mn - old[3]) * dn + (Mt - old[4]) * dt + (Mg - old[5]) * dg)
+    more = elongations(b, my, 0.5 * d, way)
+    for i in range(4):
+        before += 0.5 * (cracks.held[i, k] + cracks.stiff[i, k] * long[i] - was[i]) * more[i]
     lost = cracks.losses
     lost[0] += d * d * cracking
     lost[1] += d * d * crushing

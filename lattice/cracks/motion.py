@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from lattice.compiled import compiled
-from lattice.cracks.cells import MOVED, elongations, evaluate, gradients, turned, turned_back
+from lattice.cracks.cells import MOVED, elongations, evaluate, gradients, tangent_energy, turned, turned_back
 
 
 @compiled(inline="always")
@@ -22,36 +24,40 @@ def moved(k, my, y, plate, law, cracks):
 
 
 @compiled(nogil=True)
-def renew(count, my, y, v, alpha, scratch, plate, law, cracks):
-    """Evaluates the law in every cell whose strain has moved; displacements are y - alpha v."""
+def renew(my, y, v, alpha, dt, x, way, layered):
+    """Evaluates the law in every cell whose strain has moved, at the displacements y - alpha v; how many."""
     evaluated = 0
-    q = 0.5 / plate.d
-    for k in range(count):
-        if moved(k, my, y, plate, law, cracks):
-            evaluate_at(k, my, y, v, alpha, scratch, q, plate, law, cracks)
+    for k in range(layered.count):
+        if moved(k, my, y, layered.plate, layered.law, layered.cells):
+            evaluate_at(k, my, y, v, alpha, dt, x, way, layered)
             evaluated += 1
     return evaluated
 
 
 @compiled(nogil=True)
-def evaluate_at(k, my, y, v, alpha, x, q, plate, law, cracks):
-    """Evaluates the law in cell k at y - alpha v, of which ``x`` (5, nodes) takes the four nodes."""
+def evaluate_at(k, my, y, v, alpha, dt, x, way, layered):
+    """Evaluates the law in cell k at y - alpha v; its energy [J]. ``x`` and ``way`` (5, nodes) are room."""
+    cracks, q = layered.cells, 0.5 / layered.plate.d
     b = cracks.corner[k]
     for c in range(5):
         for n in (b, b + my, b + 1, b + my + 1):
             x[c, n] = y[c, n] - alpha * v[c, n]
+            way[c, n] = dt * v[c, n]
     s = cracks.seen
     s[0, k], xy, _ = gradients(b, my, q, y[0])
     yx, s[1, k], _ = gradients(b, my, q, y[1])
     s[3, k], py, _ = gradients(b, my, q, y[3])
     rx, s[4, k], _ = gradients(b, my, q, y[4])
     s[2, k], s[5, k] = xy + yx, py + rx
-    return evaluate(k, x, my, plate, law, cracks)
+    return evaluate(k, x, way, my, layered.plate, layered.law, cracks)
 
 
 @compiled(nogil=True)
-def crack_forces(count, my, y, plate, cracks):
-    """Forces of the first ``count`` cells on their nodes at the effective displacements y (5, nodes)."""
+def crack_forces(count, my, y, whole, plate, cracks):
+    """Forces of the first ``count`` cells on their nodes at the effective displacements y (5, nodes).
+
+    ``whole`` is 1; 0 leaves out what the cells carry without strain, so that y = alpha v gives their damping.
+    """
     q, half, f = 0.5 / plate.d, 0.5 * plate.d, 0.5 * plate.d
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
     m, u, p, o, F = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset, cracks.force
@@ -63,17 +69,23 @@ def crack_forces(count, my, y, plate, cracks):
         rx, ry, ty = gradients(b, my, q, y[4])
         en, et, eg = turned(xx, yy, xy + yx, c, s)
         kn, kt, kg = turned(px, ry, py + rx, c, s)
-        Nn = o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt
-        Nt = o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt
-        Ng = o[2, k] + m[3, k] * eg + u[3, k] * kg
-        Mn = o[3, k] + u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt
-        Mt = o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt
-        Mg = o[5, k] + u[3, k] * eg + p[3, k] * kg
+        Nn = whole * o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt
+        Nt = whole * o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt
+        Ng = whole * o[2, k] + m[3, k] * eg + u[3, k] * kg
+        Mn = whole * o[3, k] + u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt
+        Mt = whole * o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt
+        Mg = whole * o[5, k] + u[3, k] * eg + p[3, k] * kg
         N1, N2, N3 = turned_back(Nn, Nt, Ng, c, s)
         M1, M2, M3 = turned_back(Mn, Mt, Mg, c, s)
         l0, l1, l2, l3 = elongations(b, my, half, y)
-        Q0, Q1 = cracks.held[0, k] + cracks.stiff[0, k] * l0, cracks.held[1, k] + cracks.stiff[1, k] * l1
-        Q2, Q3 = cracks.held[2, k] + cracks.stiff[2, k] * l2, cracks.held[3, k] + cracks.stiff[3, k] * l3
+        Q0, Q1 = (
+            whole * cracks.held[0, k] + cracks.stiff[0, k] * l0,
+            whole * cracks.held[1, k] + cracks.stiff[1, k] * l1,
+        )
+        Q2, Q3 = (
+            whole * cracks.held[2, k] + cracks.stiff[2, k] * l2,
+            whole * cracks.held[3, k] + cracks.stiff[3, k] * l3,
+        )
         # nodes 0 (-, -), 1 (+, -), 2 (-, +), 3 (+, +)
         F[0, k], F[5, k] = f * (N1 + N3 - H * hx), f * (-N1 + N3 + H * hx)
         F[10, k], F[15, k] = f * (N1 - N3 + H * hx), f * (-N1 - N3 - H * hx)
@@ -87,15 +99,38 @@ def crack_forces(count, my, y, plate, cracks):
 
 
 @compiled(nogil=True)
-def give(count, my, ny, kick, go, y, v, cracks):
-    """Adds the forces of `crack_forces` to a sub-step that has been made; kick (3, nodes) in rows of ny."""
-    F = cracks.force
+def give(count, motion, kick, go, cracks):
+    """Adds the forces of `crack_forces` to a sub-step that has been made."""
+    F, my, ny = cracks.force, motion.y.shape[2], kick.u.shape[1]
+    y, v = motion.y.reshape(5, -1), motion.v.reshape(5, -1)
+    u, w, phi = kick.u.reshape(-1), kick.w.reshape(-1), kick.phi.reshape(-1)
     for k in range(count):
         b = cracks.corner[k]
-        i, j = b // my, b % my
-        at = i * ny + j
+        at = b // my * ny + b % my
         for n, g, r in ((b, at, 0), (b + my, at + ny, 5), (b + 1, at + 1, 10), (b + my + 1, at + ny + 1, 15)):
             for c in range(5):
-                dv = kick[max(0, min(c - 1, 2)), g] * F[r + c, k]
+                dv = (u[g] if c < 2 else w[g] if c == 2 else phi[g]) * F[r + c, k]
                 v[c, n] += dv
                 y[c, n] += go * dv
+
+
+@compiled(nogil=True)
+def energies(count, my, x, plate, cracks):
+    """Energy of each of the first ``count`` cells at the displacements x (5, nodes), with that of its hourglass modes."""
+    out, q, half = np.empty(count), 0.5 / plate.d, 0.5 * plate.d
+    H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
+    for k in range(count):
+        b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
+        xx, xy, hx = gradients(b, my, q, x[0])
+        yx, yy, hy = gradients(b, my, q, x[1])
+        px, py, tx = gradients(b, my, q, x[3])
+        rx, ry, ty = gradients(b, my, q, x[4])
+        en, et, eg = turned(xx, yy, xy + yx, c, s)
+        kn, kt, kg = turned(px, ry, py + rx, c, s)
+        E = tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
+        E += 0.5 * (H * (hx * hx + hy * hy) + R * (tx * tx + ty * ty))
+        out[k] = cracks.constant[k] + plate.d * plate.d * E
+        long = elongations(b, my, half, x)
+        for i in range(4):
+            out[k] += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
+    return out

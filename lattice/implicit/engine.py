@@ -43,6 +43,7 @@ class Engine:
         """
         self.grid, self.ice, self.alpha = grid, ice, alpha
         self.M_u, self.M_q = in_plane_mass(grid, ice), out_of_plane_mass(grid, ice)
+        self.inertia_u, self.inertia_q = self.M_u, self.M_q  #: with which the nodes move, see `ExplicitEngine`
         self.C_q, self.k_f = foundation(grid, damping), foundation(grid, ice.k_f)
         self.rows_u, self.rows_q = in_plane_springs(springs), out_of_plane_springs(springs, grid.d)
         self.springs_u, self.springs_q = SpringTable.of(grid, self.rows_u), SpringTable.of(grid, self.rows_q)
@@ -78,6 +79,15 @@ class Engine:
         for pair in self._systems.values():
             for system in pair:
                 system.remove(cells)
+
+    def layered_energy(self, u: Array, q: Array, touching: BoolArray | None = None) -> float:  # noqa: ARG002
+        """Energy of cracked cells that go on carrying load, of those with a node in ``touching`` or of all [J]."""
+        return 0.0
+
+    @property
+    def crack_losses(self) -> dict[str, float]:
+        """What such cells have taken, by cause [J]."""
+        return {}
 
     def equilibrium(self, force_u: Array, force_q: Array) -> State:
         """State of rest under constant forces (n, 2), (n, 3); a floe that nothing holds stays where it is in plane."""

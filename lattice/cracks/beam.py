@@ -1,0 +1,139 @@
+"""The strength of the layers from a beam test: the beam is simulated, cracks and all, until it breaks as it did.
+
+A section that softens is stronger in bending than in tension: when its face begins to crack the layers below still
+pull. What a beam test measures is the load of the beam, so the strength of the layers is the one with which the
+simulated beam, of cells as large as the sheet's, has that load; as section 4.2.2 of the thesis finds its factor f.
+
+The beam is cut one cell wide from a clamped plate on water, its tip is pushed down at a steady speed, and the largest
+force counts. A cell knows the moment at its middle, half a cell from the root, so the force is taken with that arm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lattice.cracks.begin import face_stresses
+from lattice.cracks.engine import CrackingEngine
+from lattice.cracks.law import CrackLaw, law_of
+from lattice.explicit.forces import NOTHING, Touch
+from lattice.grid import BoolArray, Grid, IntArray
+from lattice.ice import Ice
+from lattice.state import State
+from lattice.stiffness import hrennikoff
+from lattice.strain import CellState
+
+SPAN, WIDTH = 6.0, 2.0  #: length and width of a beam in thicknesses where no test is given: those of the basin's beam
+FEWEST = 2  #: cells over the width of the beam, however large the sheet's are
+TRIALS, CLOSE = 12, 2e-3  #: simulations at most, and difference of the load that counts as none, relative
+FALL = 0.7  #: share of its largest load to which a broken beam has come down
+
+
+@dataclass(frozen=True)
+class Beam:
+    """Cantilever that breaks at the load F, 6 F L / (w h^2) by beam theory."""
+
+    length: float  #: L [m]
+    width: float  #: w [m]
+    load: float  #: F [N]
+
+    def stress(self, h: float) -> float:
+        """Nominal strength, (4.27) [Pa]."""
+        return 6.0 * self.load * self.length / (self.width * h**2)
+
+
+def standard_beam(ice: Ice) -> Beam:
+    """A beam of usual proportions that breaks at the flexural strength."""
+    L, w = SPAN * ice.h, WIDTH * ice.h
+    return Beam(L, w, ice.sigma_f * w * ice.h**2 / (6.0 * L))
+
+
+@dataclass(frozen=True)
+class CutBeam:
+    """The beam on its lattice: a clamped square plate with a cut around the beam."""
+
+    grid: Grid
+    whole: BoolArray  #: (cells,) not cut
+    tip: IntArray  #: nodes at the end
+    arm: float  #: from the middle of the first row of cells inside the beam to the tip [m]
+
+
+def cut_beam(beam: Beam, d: float) -> CutBeam:
+    """Cells of about d [m]; a margin of half the length around the beam."""
+    across = max(FEWEST, round(beam.width / d))
+    size = beam.width / across
+    along = max(2, round(beam.length / size))
+    n = along + 2 * max(2, round(0.5 * along)) + 1
+    n += (n - across) % 2
+    first, root = (n - across) // 2, (n - along) // 2
+    grid, whole = Grid(n + 1, n + 1, size), np.ones((n, n), bool)
+    whole[root : root + along, [first - 1, first + across]] = False
+    whole[root + along, first - 1 : first + across + 1] = False
+    tip = (root + along) * grid.ny + first + np.arange(across + 1)
+    return CutBeam(grid, whole.ravel(), tip, (along - 0.5) * size)
+
+
+class BeamTest:
+    """A beam test with cracks that soften, close and slip."""
+
+    def __init__(self, ice: Ice, law: CrackLaw, cut: CutBeam, seconds: float = 6.0):
+        """The tip goes down by a steady speed such that theory breaks the elastic beam after half of ``seconds``."""
+        g, self.ice, self.cut = cut.grid, ice, cut
+        edge = np.zeros(g.nodes, bool)
+        for side in ("x-", "x+", "y-", "y+"):
+            edge[g.edge_nodes(side)] = True
+        damping = 0.1 * np.sqrt(ice.k_f * ice.rho_i * ice.h)
+        self.engine = CrackingEngine(
+            g, ice, hrennikoff(ice), seconds, law=law, held_in_plane=edge, damping=damping, alpha=1e-4, scaling=4.0
+        )
+        for kick in self.engine.mesh.kick:
+            kick[edge.reshape(g.nx, g.ny).nonzero()] = 0.0  # clamped: no deflection, no rotation
+        sag = ice.sigma_t * cut.arm**2 / (1.5 * ice.E * ice.h)  # F L^3 / 3 E I at F = sigma w h^2 / 6 L
+        self.speed = 2.0 * sag / seconds
+        self.live = cut.whole.copy()
+
+    def strength(self) -> float:
+        """Nominal strength at the largest force, 6 F a / (w h^2) with the arm a of `CutBeam` [Pa]."""
+        e, tip, block = self.engine, self.cut.tip, 8
+        everything, row, column = np.ones(self.cut.grid.nodes, bool), *np.divmod(tip, self.cut.grid.ny)
+        e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), everything)
+        e.start(State.rest(self.cut.grid.nodes), everything, ())
+        spring = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2  # soft for the sub-step, stiff against the beam
+        tangent = np.zeros((len(tip), 3, 3))
+        tangent[:, 2, 2] = -spring
+        at, none, largest, mean, t = np.zeros((len(tip), 3)), np.zeros((len(tip), 3)), 0.0, 0.0, 0.0
+        while t < 8.0 * e.window:
+            at[:, 2] = -self.speed * (t + 0.5 * block * e.dt)
+            made = e.march(block, NOTHING, Touch(row, column, np.zeros(len(tip)), at, none, tangent), lively=False)
+            t += made.steps * e.dt
+            if made.failed:
+                self._begin()
+            mean += 0.05 * (-float(made.contact[:, 2].sum()) - mean)  # over the tremor of the tip
+            largest = max(largest, mean)
+            if mean < FALL * largest and t > 0.1 * e.window:
+                width = (len(tip) - 1) * self.cut.grid.d
+                return 6.0 * largest * self.cut.arm / (width * self.ice.h**2)
+        raise ValueError(
+            f"the simulated beam did not break after {t:.0f} s: a fracture energy of this size lets it bend"
+        )
+
+    def _begin(self) -> None:
+        e, (u, q) = self.engine, self.engine.displacement()
+        stress, angle = face_stresses(CellState.of(self.cut.grid, u, q), self.ice)
+        for cell in np.flatnonzero(self.live & (stress >= self.ice.sigma_t)):
+            e.begin(int(cell), float(angle[cell]))
+            self.live[cell] = False
+        e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), np.ones(self.cut.grid.nodes, bool))
+
+
+def layer_strength(ice: Ice, law: CrackLaw, fracture_energy: float, beam: Beam, d: float) -> float:
+    """Strength of the layers with which the simulated beam breaks at its load [Pa]; cells of about ``d`` [m]."""
+    wanted, sigma, cut = beam.stress(ice.h), beam.stress(ice.h) / 1.3, cut_beam(beam, d)
+    for _ in range(TRIALS):
+        trial = replace(ice, sigma_t=sigma, sigma_f=sigma, beam_test=None)
+        found = BeamTest(trial, law_of(trial, fracture_energy, law.mu, cut.grid.d), cut).strength()
+        if abs(found - wanted) <= CLOSE * wanted:
+            return sigma
+        sigma *= (wanted / found) ** 1.2
+    raise ValueError(f"no strength of the layers found after {TRIALS} beams: {found:.4g} Pa instead of {wanted:.4g} Pa")

@@ -1,0 +1,150 @@
+"""The sheet whose cracks close: an overloaded cell becomes layered, and goes on carrying what closed cracks can carry.
+
+Nothing is lost at the instant at which a cell begins to crack, so all cells that reach their limit in a sub-step begin
+together. A piece is loose when no closed crack presses it any more and its cracks have opened or slipped by h/2, or
+slipped by h in any case, or when it has turned by `TURNED`: not when its cells are cracked.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from lattice.contact import EdgeContact, edge_displacement
+from lattice.cracks.begin import face_stresses
+from lattice.cracks.engine import CrackingEngine
+from lattice.cracks.law import CrackLaw
+from lattice.criteria.judge import Standing
+from lattice.criteria.table import CRITERIA, Criterion
+from lattice.explicit_sheet import ExplicitSheet
+from lattice.explicit.engine import Marched
+from lattice.explicit.forces import PointForces, point_forces
+from lattice.explicit.window import Window
+from lattice.floe import Release
+from lattice.grid import Array, BoolArray, IntArray
+from lattice.loads import Loads
+from lattice.outcome import TURNED_TOO_FAR, Outcome
+from lattice.sheet import TURNED
+from lattice.state import State
+from lattice.strain import CellState
+
+PRINCIPAL = (CRITERIA["principal-stress"],)
+
+
+class CrackingSheet(ExplicitSheet):
+    """`ExplicitSheet` with layered cells; ``intact`` are those that have not begun to crack."""
+
+    engine: CrackingEngine
+
+    def __init__(self, *args: Any, law: CrackLaw, scaling: float = 1.0, criteria: tuple[Criterion, ...] = PRINCIPAL,
+                 **options: Any):  # fmt: skip
+        """As `ExplicitSheet`; the strengths of the ice are those of its layers."""
+        make = partial(CrackingEngine, law=law, scaling=scaling)
+        super().__init__(*args, criteria=criteria, engine=make, **options)
+        self._pull = 0.0  #: impulse along x that held nodes have taken from layered cells in this window [N s]
+
+    # ---- what begins to crack ---------------------------------------------------------------------------------
+
+    @property
+    def standing(self) -> Standing:
+        """Cells that are still elastic; their limit is that of the layers, beside a crack as anywhere."""
+        key = self.intact.tobytes() + self.present.tobytes()
+        if self._known is None or self._known[0] != key:
+            live: BoolArray = self.intact & self.present[self.grid.cell_nodes].all(axis=1)
+            nowhere, limit = np.zeros(self.grid.cells, bool), np.full(self.grid.cells, self.ice.sigma_t)
+            self._known = key, Standing(live, nowhere, limit)
+        return self._known[1]
+
+    def _break(self, t: float, done: int, loads: Loads, contact: EdgeContact, out: Outcome, release: Release) -> None:
+        """Cells that reached their limit in the last sub-step begin to crack, all of them."""
+        e, now, ended = self.engine, t + done * self.engine.dt, self._at(0.0)
+        utilisation, before = self._utilisation(ended), self._utilisation(self._at(1.0))
+        cells, half = np.flatnonzero(utilisation >= 1.0), self._at(0.5)
+        if not len(cells):
+            return
+        rise = np.maximum(utilisation[cells] - before[cells], 1e-300)
+        part = np.clip((1.0 - before[cells]) / rise, 0.0, 1.0)
+        order = np.lexsort((cells, part))
+        cells, part = cells[order], part[order]
+        if out.failure is None:
+            out.failure = (now - (1.0 - part[0]) * e.dt, e.touch(now, contact).force)
+        self.failed_cells += cells.tolist()
+        self.failure_times += (now - (1.0 - part) * e.dt).tolist()
+        out.causes += self.judge.causes(ended.u, ended.q, self.standing, cells)
+        out.failed += cells.tolist()
+        _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells), self.ice)
+        for cell, angle in zip(cells.tolist(), angles.tolist(), strict=True):
+            self.energy.book_failure(cell, half)  # with x(n) . K x(n-1) / 2, as leapfrog has it
+            self.energy.fracture -= e.begin(cell, angle)
+            self.intact[cell] = False
+        self._set_cells()
+
+    def _ease(self) -> None:
+        self._set_cells()
+
+    # ---- what holds together ----------------------------------------------------------------------------------
+
+    @property
+    def joins(self) -> BoolArray:
+        """Elastic cells, and layered ones that are not parted, (cells,)."""
+        joins = self.intact.copy()
+        joins[self.engine.layered.cell[~self._parted()]] = True
+        return joins
+
+    def _parted(self) -> BoolArray:
+        """Layered cells whose crack is through, pressed by nothing, and open or slipped by h/2, (count,)."""
+        layered = self.engine.layered
+        if not layered.count:
+            return np.zeros(0, bool)
+        through, opening, slip = layered.parting(self.grid.d)
+        h = self.ice.h
+        loose = through & (layered.thrust <= 0.0) & (np.maximum(opening, slip) > 0.5 * h)
+        return np.asarray((loose | (slip > h)).any(axis=1))
+
+    def let_go(self, t: float, contact: EdgeContact, out: Outcome, release: Release) -> None:
+        """At the start of a window: pieces that nothing presses any more, and those that have turned too far."""
+        rotation = np.where(self.present, np.abs(self.state.q[:, 1:]).max(axis=1), 0.0)
+        turned = None
+        if rotation.max() > TURNED:
+            turned = rotation > 0.5 * TURNED
+            corners = turned[self.grid.cell_nodes]
+            self._cut(corners.any(axis=1) & ~corners.all(axis=1), out)
+        elif not self._parted().any():
+            return
+        self._release_loose(out, release, turned)
+        if out.pieces:
+            out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
+            gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
+            self.engine.layered.drop(gone)  # with the energy that `book_departure` has booked
+
+    def _cut(self, mask: BoolArray, out: Outcome) -> None:
+        """Cells that part a piece which has turned too far carry nothing any more."""
+        cells = np.flatnonzero(mask & self.live_cells)
+        for cell in cells.tolist():
+            self.energy.book_failure(cell, self.state)
+        self.intact[cells] = False
+        out.failed += cells.tolist()
+        out.causes += [TURNED_TOO_FAR] * len(cells)
+        self.energy.fracture += self.engine.lose(mask[self.engine.layered.cell], self.state)
+
+    # ---- what held nodes take ---------------------------------------------------------------------------------
+
+    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """As `ExplicitSheet.advance`."""
+        self._pull = 0.0
+        out = super().advance(t, loads, contact, release)
+        r = out.reaction
+        r.held = (r.held[0] + self._pull / self.dt, r.held[1])
+        return out
+
+    def _march(self, t: float, done: int, loads: Loads, contact: EdgeContact, window: Window) -> Marched:
+        before = self.engine.pull(self.support.held)
+        out = super()._march(t, done, loads, contact, window)
+        time = out.steps * self.engine.dt
+        self._pull += 0.5 * time * (before + self.engine.pull(self.support.held))
+        return out
+
+    def _holding(self) -> float:
+        return super()._holding() + self.engine.pull(self.support.held)
