@@ -9,10 +9,10 @@ import numpy as np
 from cosim.observer import RunInfo
 from cosim.scenario import Scenario
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import NS, Array, IntArray
+from coupling.interface import NS, Array, IntArray, RubbleParticipant
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
-from coupling.scheduler import RubbleParticipant, Scheduler
+from coupling.scheduler import Scheduler
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble

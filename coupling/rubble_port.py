@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from coupling.budget import Pairs
 from coupling.handover import BlockBirth, births, centre_of, momenta_of
-from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
+from coupling.interface import (
+    NS,
+    Array,
+    BlockTable,
+    ForcePairs,
+    Fragment,
+    HandOver,
+    IntArray,
+    Phase,
+    Restore,
+    SheetEdge,
+    SheetForces,
+    SimulationError,
+)
 from coupling.structure import Structure
 from rubble import snapshot
 from rubble.block import Block
@@ -23,18 +36,6 @@ from rubble.stock import books, energy_of
 OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
 LID = 1e9  #: stiffness of the still sheet under which initial rubble settles [N/m]
 SMALLEST = 1e-3  #: share of h^2 below which what is left of a trimmed block counts as crushed
-
-
-@dataclass(frozen=True)
-class HandOver:
-    """Balance of one fragment: what left the lattice and what arrived."""
-
-    blocks: int
-    mass: float  #: of the fragment, without what was crushed before [kg]
-    trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
-    momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
-    angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, in the x-z plane
-    angular_momentum_change: float = 0.0  #: part of it that goes because a block has its mass in its body, not at nodes
 
 
 @dataclass(frozen=True)
@@ -208,13 +209,14 @@ class RubblePort:
         """Mean power of these forces on the edges as the rubble saw them move [W]."""
         return self.layer.power_on_sheet
 
-    def save(self) -> Saved:
-        """The rubble between two windows, for `restore`; this run goes on from the copy as well (`rubble.snapshot`)."""
+    def save(self) -> Restore:
+        """The rubble between two windows; this run goes on from the copy as well (`rubble.snapshot`)."""
         saved = Saved(snapshot.save(self.layer), self._edges, self._forces, self._fragments, self._born.copy())
-        self.restore(saved)
-        return saved
+        restore = partial(self._restore, saved)
+        restore()
+        return restore
 
-    def restore(self, saved: Saved) -> None:
+    def _restore(self, saved: Saved) -> None:
         """Sets the rubble back; a window from here has the same bits as the first one from here."""
         self.layer = snapshot.restore(saved.layer, self.layer)
         self._edges, self._forces, self._fragments = saved.edges, saved.forces, saved.fragments
@@ -242,7 +244,7 @@ class RubblePort:
         return self.layer.load_by_phase(list(Phase))
 
     @property
-    def budget(self) -> Pairs:
+    def budget(self) -> ForcePairs:
         """What carries the blocks, and minus their force on the sheet; see `coupling.budget`."""
         terms = {name: (float(f[0]), float(f[1])) for name, f in self.layer.budget.items()}
         x, z = terms.pop("on_sheet")
@@ -273,7 +275,7 @@ class NoRubble:
 
     def __init__(self) -> None:
         self.mass, self.cleared_mass, self.power = 0.0, 0.0, 0.0
-        self.budget: Pairs = {}
+        self.budget: ForcePairs = {}
         self.energy: dict[str, float] = {}
         self.momenta: dict[str, float] = {}
 
@@ -285,12 +287,9 @@ class NoRubble:
     def sections_in_use(self) -> list[int]:
         return []
 
-    def save(self) -> float:
+    def save(self) -> Restore:
         """All there is to remember: what has been taken away."""
-        return self.cleared_mass
-
-    def restore(self, saved: float) -> None:
-        self.cleared_mass = saved
+        return partial(setattr, self, "cleared_mass", self.cleared_mass)
 
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
         """Nothing is there to meet the sheet."""

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
 from coupling import sheet_events
-from coupling.budget import Pairs
 from coupling.compiled import compiled
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
@@ -20,30 +18,22 @@ from coupling.interface import (
     Event,
     Fragment,
     IntArray,
+    Restore,
     SheetEdge,
     SheetForces,
+    SheetReport,
     SheetView,
     SimulationError,
 )
 from coupling.structure import Structure
 from coupling.yielding import oscillator
 from lattice.engine import State, StepError
-from lattice.memory import Memory, recall, remember
+from lattice.memory import recall, remember
 from lattice.sheet import Outcome, Sheet, edge_displacement
 
 Motion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity (n, 2) of nodes
 
 REACH = 30.0  #: length of sheet behind its edge that the rubble meets [m]
-
-
-@dataclass
-class SheetReport:
-    """What the sheet did in a window."""
-
-    load: Array  #: (3,) mean force of the sheet on the structure [N]
-    fragments: list[Fragment] = field(default_factory=list)
-    events: list[Event] = field(default_factory=list)
-    budget: Pairs = field(default_factory=dict)  #: what carries the sheet, see `coupling.budget`
 
 
 class SheetPort:
@@ -117,13 +107,10 @@ class SheetPort:
         }
         return SheetReport(load, self._fragments, events, budget)
 
-    def save(self) -> Memory:
-        """The sheet, its edge and its contact between two windows, for `restore`."""
-        return [*remember(self), *remember(self.edge, "depth"), *remember(self.contact), *self.sheet.save()]
-
-    def restore(self, saved: Memory) -> None:
-        """Sets all back; a window from here has the same bits as the first one from here."""
-        recall(saved)
+    def save(self) -> Restore:
+        """The sheet, its edge and its contact between two windows."""
+        saved = [*remember(self), *remember(self.edge, "depth"), *remember(self.contact), *self.sheet.save()]
+        return partial(recall, saved)
 
     def _power(self, rubble: SheetForces) -> float:
         """Power of the forces on the nodes that are still in the lattice, by their way in the window [W]."""
