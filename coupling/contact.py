@@ -23,8 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.interface import Array, IntArray
-from coupling.structure import Structure, overlap_of
+from coupling.interface import Array, IntArray, Structure
 
 SAMPLES = 8  #: points across the width of a node
 
@@ -67,7 +66,7 @@ class OverlapContact:
         z = self.touching_z + y[:, 2]
         x = self._x + self._v * t + y[:, 0]
         across = self._sample_y + y[:, 1:2]
-        return overlap_of(x, across, z, self._s.z, self._s.r, self._s.revolved)
+        return self._s.overlap(x, across, z)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] at displacements y (m, 3): an `EdgeContact`."""

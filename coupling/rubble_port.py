@@ -22,8 +22,8 @@ from coupling.interface import (
     SheetEdge,
     SheetForces,
     SimulationError,
+    Structure,
 )
-from coupling.structure import Structure
 from rubble import snapshot
 from rubble.block import Block
 from rubble.geometry import contiguous, moments
@@ -67,11 +67,16 @@ class RubblePort:
         bottom, top = max(structure.bottom, -domain.depth), structure.top
 
         def solids(y: float) -> list[Array]:
-            outline = structure.section_outline(y, bottom, top, OUTLINE_TOLERANCE)
-            return convex_parts(outline, back=None if structure.revolved else float(outline[:, 0].max()) + 100.0)
+            return convex_parts(*structure.section(y, bottom, top, OUTLINE_TOLERANCE))
 
         self.layer = RubbleLayer(
-            physics, pitch, origin=origin, solids=solids, revolved=structure.revolved, domain=domain, threads=threads
+            physics,
+            pitch,
+            origin=origin,
+            solids=solids,
+            revolved=bool(structure.bearing(-1.0, 0.0, 0.0)[1]),
+            domain=domain,
+            threads=threads,
         )
         self.physics, self.columns_per_section = physics, columns_per_section
         self.structure = structure
@@ -123,9 +128,9 @@ class RubblePort:
 
     def front_sections(self) -> list[int]:
         """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
-        half = float(self.structure.radius(0.0)) if self.structure.revolved else self.layer.domain.y_max
+        half = min(self.structure.half_width, self.layer.domain.y_max)
         keys = range(self.layer.key_at(-half), self.layer.key_at(half) + 1)
-        return [k for k in keys if abs(self.layer.centre(k)) < half]
+        return [k for k in keys if abs(y := self.layer.centre(k)) < half and np.isfinite(self.structure.face_x(y, 0.0))]
 
     def fill(self, volume: float, seed: int, edges: dict[int, SheetEdge]) -> Pile:
         """Initial rubble: ``volume`` [m^3] settled in the sections of ``edges``, under a still sheet."""

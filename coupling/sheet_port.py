@@ -11,7 +11,7 @@ from coupling import sheet_events
 from coupling.compiled import compiled
 from coupling.contact import ContactLaw, OverlapContact
 from coupling.edge import CrushedEdge
-from coupling.friction_share import friction_part
+from coupling.contact_friction import friction_part
 from coupling.interface import (
     NS,
     Array,
@@ -24,8 +24,8 @@ from coupling.interface import (
     SheetReport,
     SheetView,
     SimulationError,
+    Structure,
 )
-from coupling.structure import Structure
 from coupling.yielding import oscillator
 from lattice.engine import State, StepError
 from lattice.memory import recall, remember

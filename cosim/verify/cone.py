@@ -15,7 +15,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, near
 from coupling.rubble_port import OUTLINE_TOLERANCE
-from coupling.structure import Structure, cone
+from coupling.structure import Revolved, cone
 from rubble.geometry import Array
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
@@ -55,9 +55,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
         WIDTH,
         origin=y,
         revolved=True,
-        solids=lambda at: convex_parts(
-            structure.section_outline(at, structure.bottom, structure.top, OUTLINE_TOLERANCE)
-        ),
+        solids=lambda at: convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE)),
     )
     z, angle = -1.5, 2.0 * np.pi * (np.arange(128) + 0.5) / 128
     n = structure.normal(y, z)
@@ -91,7 +89,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
 
 
 def _statics(
-    p: dict[str, Any], structure: Structure, y: float, centre: Array, velocity: Array, across: float, lift: float
+    p: dict[str, Any], structure: Revolved, y: float, centre: Array, velocity: Array, across: float, lift: float
 ) -> Array:
     """Force on the structure (3,) of a round block at ``centre`` that slides with ``velocity``, across at a speed."""
     z = np.linspace(centre[1] - SIZE, centre[1] + SIZE, 2001)

@@ -43,7 +43,7 @@ def slide(p: dict[str, Any], mu: float, slope: float, wet: bool) -> tuple[float,
     a, up = radians(slope), -1.0 if wet else 1.0
     plane = plane_slope(a, top=120.0, toe_depth=120.0, breaking="downward" if wet else "upward")
     layer = RubbleLayer(
-        physics, WIDTH, solids=lambda y: convex_parts(plane.section_outline(y, plane.bottom, plane.top), back=1e4)
+        physics, WIDTH, solids=lambda y: convex_parts(plane.section(y, plane.bottom, plane.top, 0.01)[0], back=1e4)
     )
     z = up * 100.0
     box = np.array([(-LENGTH / 2, 0.0), (LENGTH / 2, 0.0), (LENGTH / 2, HEIGHT), (-LENGTH / 2, HEIGHT)])

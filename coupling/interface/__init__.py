@@ -39,6 +39,7 @@ from coupling.interface.sheet import (
     SheetReport,
     SheetView,
 )
+from coupling.interface.structure import Structure
 from coupling.interface.units import NS, PHASES, Array, BoolArray, IntArray, Phase, SimulationError
 
 __all__ = [
@@ -63,4 +64,5 @@ __all__ = [
     "SheetReport",
     "SheetView",
     "SimulationError",
+    "Structure",
 ]

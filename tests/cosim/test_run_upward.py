@@ -141,7 +141,7 @@ def test_the_mesh_is_the_structure(name):
     assert points[:, 2].max() == structure.top
     assert triangles.max() < len(points)
     x = structure.face_x(0.0, points[:, 2])
-    front = points[np.abs(points[:, 1]) < 1e-6] if structure.revolved else points
+    front = points[np.abs(points[:, 1]) < 1e-6] if structure.half_width < np.inf else points
     assert np.abs(front[:, 0]).max() == pytest.approx(np.abs(x).max())
     low, high = points[points[:, 2] < -1.0, 0].min(), points[points[:, 2] == structure.top, 0].min()
     assert low < high  # the face leans back
@@ -150,7 +150,7 @@ def test_the_mesh_is_the_structure(name):
 @pytest.mark.parametrize("y", [0.0, 0.5, 1.5])
 def test_sections_of_an_upward_cone_are_solid_up_to_its_shaft(y):
     shape = cone(np.radians(60), 2.5, 0.75, toe_depth=4.0, top=8.0, breaking="upward")
-    parts = convex_parts(shape.section_outline(y, -4.0, 8.0, OUTLINE_TOLERANCE))
+    parts = convex_parts(*shape.section(y, -4.0, 8.0, OUTLINE_TOLERANCE))
     top = max(float(p[:, 1].max()) for p in parts)
     neck = (2.5 - 0.75) * np.sqrt(3.0)
     assert top == pytest.approx(8.0 if y < 0.75 else (2.5 - y) * np.sqrt(3.0), abs=1e-2)

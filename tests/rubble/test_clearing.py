@@ -22,7 +22,7 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
         WIDTH,
         revolved=True,
         domain=Domain(x_max=14.0, depth=60.0, y_max=30.0),
-        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+        solids=lambda y: convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3)),
     )
     random, draft, fed, rows = np.random.default_rng(1), H * 846 / rho_w, [], []
     for window in range(round(seconds / 0.05)):
@@ -69,7 +69,7 @@ def test_a_block_passes_under_the_toe():
         WIDTH,
         revolved=True,
         domain=Domain(x_max=14.0),
-        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+        solids=lambda y: convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3)),
     )
     for z in (-7.0, -9.1):
         outline = np.array([(-12, z - 1), (-8, z - 1), (-8, z + 1), (-12, z + 1)], dtype=float)
@@ -97,7 +97,7 @@ def pressed_aside(feed_speed):
         physics,
         WIDTH,
         revolved=True,
-        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+        solids=lambda y: convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3)),
     )
     draft = H * 846 / 1006
     outline = np.array([(-14.0, -draft), (-10.0, -draft), (-10.0, H - draft), (-14.0, H - draft)])
