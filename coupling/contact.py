@@ -97,7 +97,7 @@ class OverlapContact:
         """Pressure [Pa] at overlaps L (k, SAMPLES) of the nodes `rows`, and its derivative to L [Pa/m]."""
         return np.full(L.shape, self._law.strength), np.zeros(L.shape)
 
-    def settle(self, t: float, y: Array) -> Array:
+    def close_window(self, t: float, y: Array) -> Array:
         """Called at the end of a window: depth to which the touching edge is crushed, (m, SAMPLES) [m]."""
         return self.overlap(t, y)[0]
 
@@ -118,7 +118,7 @@ class CrushingContact(OverlapContact):
 
     The face of contact reaches from the touching edge, h / 2 from the middle of the ice, down to the depth
     s = min(L tan a, h) below it, so the force acts h / 2 - s / 2 from the middle. Its moment bends a downward-breaking
-    edge up, against the vertical force. c and the height are settled at the end of each window.
+    edge up, against the vertical force. c and the height are set at the end of each window.
     """
 
     def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
@@ -138,7 +138,7 @@ class CrushingContact(OverlapContact):
         bearing = (elastic > 0.0) & (elastic < self._law.strength)
         return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
 
-    def settle(self, t: float, y: Array) -> Array:
+    def close_window(self, t: float, y: Array) -> Array:
         L, normal = self.overlap(t, y)
         self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness), self._bearing(L, normal))
         return self._crushed.copy()

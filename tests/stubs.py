@@ -96,4 +96,4 @@ class MassBehindSpring:
 
 def edge(x, v):
     """An edge of one node."""
-    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), 1.0, np.array([0]), (1.0, 1.0), (1.0, 1.0))
+    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), np.array([0]), (1.0, 1.0), (1.0, 1.0))

@@ -53,7 +53,6 @@ class Fragment:
     cut: Array  #: (n,) how far the face that touches is crushed back, from the front of the node's ice [m]
     cut_tan: Array  #: (n,) steepness of the cut: depth below the touching face over distance along x
     cut_face: float  #: +1 if the upper edge of the ice was crushed (downward-breaking structure), -1 the lower
-    thickness: float  #: [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +60,13 @@ class SheetEdge:
     """The sheet in one section as the rubble meets it in a window: nodes of its front rows, front first.
 
     Places are those at the start of the window, velocities the means over it, both with the rubble's forces of the
-    window before; what these forces change since, the edge answers as an oscillator (see `coupling.yielding`).
+    window before; what these forces change since, the edge answers as an oscillator (see `coupling.sheet_port.yielding`).
     """
 
     x: Array  #: (m,) node positions along x, decreasing [m]
     z: Array  #: (m,) middle of the thickness [m]
     front: float  #: x of the sheet's foremost point, at most half a cell ahead of x[0] [m]
     velocity: Array  #: (m, 2) velocity of the nodes in x and z [m/s]
-    thickness: float  #: [m]
     nodes: IntArray  #: (m,) node numbers of the lattice, to which forces return
     stiffness: tuple[float, float]  #: of the edge in x and z [N/m]
     inertia: tuple[float, float]  #: mass that moves with the edge in x and z [kg]

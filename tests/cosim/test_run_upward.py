@@ -100,12 +100,12 @@ def test_a_strip_breaks_at_croasdales_load():
 def test_a_sheet_that_leaves_the_water_is_an_event():
     scheduler = build(load_scenario(PLANE, STRIP))
     port = scheduler.sheet
-    assert port.draft == pytest.approx(0.5 * 916.2 / 999.8)
-    port.sheet.state.q[:, 0] = 1.01 * port.draft
-    (event,) = port._lifted_out(np.zeros(3))
+    assert port.watch.draft == pytest.approx(0.5 * 916.2 / 999.8)
+    port.sheet.state.q[:, 0] = 1.01 * port.watch.draft
+    (event,) = port.watch.lifted_out(np.zeros(3))
     assert event.kind == "out_of_water"
     assert "draft of 0.46 m" in event.text
-    assert port._lifted_out(np.zeros(3)) == []
+    assert port.watch.lifted_out(np.zeros(3)) == []
 
 
 @pytest.mark.parametrize(
