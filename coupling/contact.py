@@ -25,7 +25,9 @@ import numpy as np
 
 from coupling.interface import Array, IntArray, Structure
 
-SAMPLES = 8  #: points across the width of a node
+#: points across the width of a node: on a cone of 15 m the mean overlap of nodes 1 m apart is within 1 % of the exact
+#: one from L = 0.1 m on
+SAMPLES = 8
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,7 @@ class OverlapContact:
         growing = (L > 0.0) & (whole * cos > L)
         return sin, cos, growing, np.where(growing, L / np.maximum(cos, 1e-12), np.where(L > 0.0, whole, 0.0))
 
-    def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
+    def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:  # noqa: ARG002 - other laws know their nodes
         """Pressure [Pa] at overlaps L (k, SAMPLES) of the nodes `rows`, and its derivative to L [Pa/m]."""
         return np.full(L.shape, self._law.strength), np.zeros(L.shape)
 
@@ -134,11 +136,13 @@ class CrushingContact(OverlapContact):
         self._known = dict(zip(self.nodes.tolist(), np.column_stack((crushed, height)), strict=True))
 
     def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
+        """Elastic up to the strength, where the ice is not crushed yet."""
         elastic = self._law.stiffness * (L - self._crushed[rows])
         bearing = (elastic > 0.0) & (elastic < self._law.strength)
         return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
 
     def close_window(self, t: float, y: Array) -> Array:
+        """The crushed depth follows the overlap, less the closure at full strength; so does the height."""
         L, normal = self.overlap(t, y)
         self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness), self._bearing(L, normal))
         return self._crushed.copy()

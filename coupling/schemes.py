@@ -45,6 +45,7 @@ class ParallelExplicit:
         self._carried = SheetForces.none()
 
     def __call__(self, s: Scheduler) -> SheetReport:
+        """One window."""
         force, edges = s.rubble.forces_on_sheet(), self._edges(s)
         report = s.move_sheet(force)
         if edges is None or report.fragments:
@@ -80,6 +81,7 @@ class SerialImplicit:
         self._unconverged = 0
 
     def __call__(self, s: Scheduler) -> SheetReport:
+        """One window, as often as it takes."""
         force, restore = self._first_guess(s), s.save()
         for k in range(1, self._limits.max_iterations + 1):
             if k > 1:

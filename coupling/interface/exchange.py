@@ -25,4 +25,5 @@ class SheetForces:
 
     @classmethod
     def none(cls) -> SheetForces:
+        """No rubble touches the sheet."""
         return cls(np.empty(0, np.int64), np.empty((0, 3)))

@@ -31,10 +31,12 @@ class BlockTable:
 
     @property
     def count(self) -> int:
+        """Number of blocks."""
         return len(self.id)
 
     @classmethod
     def empty(cls) -> BlockTable:
+        """No blocks."""
         i, f = np.empty(0, np.int64), np.empty(0)
         return cls(
             i,

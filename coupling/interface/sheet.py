@@ -60,7 +60,8 @@ class SheetEdge:
     """The sheet in one section as the rubble meets it in a window: nodes of its front rows, front first.
 
     Places are those at the start of the window, velocities the means over it, both with the rubble's forces of the
-    window before; what these forces change since, the edge answers as an oscillator (see `coupling.sheet_port.yielding`).
+    window before; what these forces change since, the edge answers as an oscillator with this stiffness and inertia
+    (see `coupling.sheet_port.yielding`). The ice is as thick as the rubble's blocks.
     """
 
     x: Array  #: (m,) node positions along x, decreasing [m]

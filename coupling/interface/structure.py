@@ -42,7 +42,7 @@ class Structure(Protocol):
 
     @property
     def reach(self) -> float:
-        """x behind which ice has passed the structure."""
+        """The x behind which ice has passed the structure."""
         ...
 
     def foremost_x(self, z: float) -> float:
@@ -50,7 +50,7 @@ class Structure(Protocol):
         ...
 
     def face_x(self, y: ArrayLike, z: ArrayLike) -> Array:
-        """x of the front face; nan where the line along x misses the structure. y and z broadcast."""
+        """Place along x of the front face; nan where the line along x misses the structure. y and z broadcast."""
         ...
 
     def normal(self, y: ArrayLike, z: ArrayLike) -> Array:
@@ -74,7 +74,7 @@ class Structure(Protocol):
         ...
 
     def section(self, y: float, z_lo: float, z_hi: float, tolerance: float) -> tuple[Array, Array]:
-        """Front and rear of the cut by the plane y between two heights: polylines (n, 2), (m, 2) of (x, z), z ascending.
+        """Front and rear of the cut by the plane y between two heights: lines (n, 2), (m, 2) of (x, z), z ascending.
 
         No chord lies farther from the surface than ``tolerance``. (0, 2) both if the plane misses. Between two corners
         at which the front turns inwards the cut is convex.

@@ -1,4 +1,4 @@
-"""The rubble as a participant: joins blocks to sheet and structure. The only room of coupling that knows `rubble`."""
+"""The rubble as a participant: joins blocks to sheet and structure. Only this room of coupling knows `rubble`."""
 
 from coupling.rubble_port.no_rubble import NoRubble
 from coupling.rubble_port.port import OUTLINE_TOLERANCE, RubblePort

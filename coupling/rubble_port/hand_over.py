@@ -12,8 +12,8 @@ from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.stock import energy_of
 
-#: share of h^2 below which what is left of a trimmed block counts as crushed: a sliver as long as the ice is thick would
-#: be thinner than a fifth of the overlap that contacts leave alone (0.5 % of h), so no contact would hold it
+#: share of h^2 below which what is left of a trimmed block counts as crushed: a sliver as long as the ice is thick
+#: would be thinner than a fifth of the overlap that contacts leave alone (0.5 % of h), so no contact would hold it
 SMALLEST = 1e-3
 
 

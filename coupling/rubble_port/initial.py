@@ -55,7 +55,7 @@ def _settled(port: RubblePort, pile: Callable[[], Pile]) -> Pile:
 
 
 def _corners(port: RubblePort, edges: dict[int, SheetEdge]) -> dict[int, tuple[float, float]]:
-    """The corner that rubble fills: x of the structure's face at the sheet's underside, or of the front, and its z [m]."""
+    """The corner that rubble fills: x of the structure's face, or of the front, at the sheet's underside, and z [m]."""
     under = {k: float(e.z[0]) - 0.5 * port.physics.thickness for k, e in edges.items()}
     face = {k: float(port.structure.face_x(port.layer.centre(k), under[k])) for k in edges}
     return {k: (min(face[k], e.front), under[k]) for k, e in edges.items() if np.isfinite(face[k])}

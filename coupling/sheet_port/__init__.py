@@ -1,4 +1,4 @@
-"""The sheet as a participant: joins the lattice to structure and rubble. The only room of coupling that knows `lattice`."""
+"""The sheet as a participant: joins the lattice to structure and rubble. Only this room of coupling knows `lattice`."""
 
 from coupling.sheet_port.port import SheetPort
 

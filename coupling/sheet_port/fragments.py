@@ -11,7 +11,7 @@ from lattice.sheet import Sheet
 
 
 def fragment(sheet: Sheet, motion: Motion, front: Front, nodes: IntArray) -> Fragment:
-    """The piece of these nodes as it is and moves now, less what is crushed off it. Books its leaving with the front."""
+    """The piece of these nodes as it is and moves now, less what is crushed off it; the front books that it leaves."""
     g, s, edge = sheet.grid, sheet.state, front.edge
     row, column = np.divmod(nodes, g.ny)
     position = motion.position(nodes)

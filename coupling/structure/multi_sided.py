@@ -5,7 +5,7 @@ is where this sum is smaller for all facets. At height z the cut is a regular po
 between the facets. In a plane y the front is the rearmost of the facets that face the ice (cos psi < 0), the rear the
 foremost of the others, all of them straight in z: every section is exact, and convex along each piece of the profile.
 
-With many facets it is the body of revolution with the same profile, up to the corners that stick out by r (pi / n)^2 / 2.
+With many facets it is the body of revolution with the same profile, up to corners that stick out by r (pi / n)^2 / 2.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ALONG = 1e-12  #: |cos psi| below which a facet stands along the drift and is ne
 
 @compiled()
 def front_facet(y: float, r: float, cos_psi: Array, sin_psi: Array) -> tuple[float, int]:
-    """x of the front at y where the facets are r from the axis, and its facet; -1 where a line along x misses."""
+    """Front at y, along x, where the facets are r from the axis, and its facet; -1 where a line along x misses."""
     front, rear, facet, beside = -np.inf, np.inf, -1, False
     for i in range(len(cos_psi)):
         if abs(cos_psi[i]) < ALONG:
@@ -88,7 +88,7 @@ class MultiSidedCone(Profiled):
 
     @cached_property
     def _corners(self) -> tuple[Array, Array]:
-        """x and y of the corners where facets are 1 m from the axis, (n,) each [m]."""
+        """Places x, y of the corners where facets are 1 m from the axis, (n,) each [m]."""
         mid = self.psi + pi / self.sides
         return np.cos(mid) / cos(pi / self.sides), np.sin(mid) / cos(pi / self.sides)
 
@@ -107,7 +107,7 @@ class MultiSidedCone(Profiled):
         return float(self.profile.radius(z) * self._corners[0].min())
 
     def _front(self, y: ArrayLike, z: ArrayLike) -> tuple[Array, IntArray]:
-        """x of the front and its facet, -1 where there is none."""
+        """Front along x and its facet, -1 where there is none."""
         y, r = np.broadcast_arrays(np.asarray(y, dtype=np.float64), self.profile.radius(z))
         found = [front_facet(a, b, *self._facets) for a, b in zip(y.ravel().tolist(), r.ravel().tolist(), strict=True)]
         x, facet = (np.array([f[k] for f in found]).reshape(y.shape) for k in range(2))
@@ -163,7 +163,7 @@ class MultiSidedCone(Profiled):
         return np.array([low, *np.sort(r[(r > low) & (r < high)]).tolist(), high])
 
     def _side_x(self, y: float, r: Array, side: float) -> Array:
-        """x of the front (side -1) or rear (+1) where the facets are r (k,) from the axis, (k,) [m]."""
+        """Place along x of the front (side -1) or rear (+1) where the facets are r (k,) from the axis, (k,) [m]."""
         c, s = self._facets
         on = c * side > ALONG
         x = (r[:, None] - y * s[on]) / c[on]

@@ -67,7 +67,13 @@ class PlaneSlope(Profiled):
         L, normal = overlap_of_plane(x, y, z, self.profile.z, self.profile.r)
         return L, normal
 
-    def section(self, y: float, z_lo: float, z_hi: float, tolerance: float) -> tuple[Array, Array]:
+    def section(  # all planes y cut it alike
+        self,
+        y: float,  # noqa: ARG002
+        z_lo: float,
+        z_hi: float,
+        tolerance: float,
+    ) -> tuple[Array, Array]:
         """The profile itself, the same in all planes, and a rear wall `THICK` behind its rearmost point."""
         checked(tolerance)
         points = []

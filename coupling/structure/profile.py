@@ -59,14 +59,14 @@ class Profile:
         return np.asarray((np.diff(self.r) / np.diff(self.z))[piece])
 
     def pieces(self, z_lo: float, z_hi: float) -> Iterator[tuple[float, float, float, float, float]]:
-        """Straight pieces between two heights: start (z0, r0) and slope of each, and the heights a < b that are inside."""
+        """Straight pieces between two heights: start (z0, r0) and slope of each, heights a < b that are inside."""
         for (z0, r0), (z1, r1) in zip(self.points[:-1], self.points[1:], strict=True):
             a, b = max(z0, z_lo), min(z1, z_hi)
             if a < b:
                 yield z0, r0, (r1 - r0) / (z1 - z0), a, b
 
     def drawn(self, sea_bed: float = -40.0) -> tuple[Array, Array]:
-        """z and r of the points, cut off at the depth to which a picture goes [m]."""
+        """Heights and radii of the points, cut off at the depth to which a picture goes [m]."""
         z = self.z.copy()
         z[0] = max(z[0], sea_bed)
         return z, self.radius(z)

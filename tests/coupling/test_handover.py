@@ -122,7 +122,9 @@ def test_momentum_linear_and_angular_of_a_fragment_goes_over_with_what_is_trimme
 
 @pytest.mark.parametrize("wrong", [{"omega": -0.05}, {"centre": np.array([1.0, 0.0])}, {"inertia": 1.0}])
 def test_a_hand_over_that_spoils_the_angular_momentum_is_found(monkeypatch, wrong):
-    wrong_births = lambda *args: (replace(b, **wrong) for b in births(*args))
+    def wrong_births(*args):
+        return (replace(b, **wrong) for b in births(*args))
+
     monkeypatch.setattr(coupling.rubble_port.hand_over, "births", wrong_births)
     assert handed_over(-5.0).angular_momentum_error > 1e-3
 
