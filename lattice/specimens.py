@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lattice.criteria import mohr_factors
+from lattice.criteria.mohr import circle_of_connections, mohr_factors
 from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.statics import all_around, held_out_of_plane, in_plane_stiffness, out_of_plane_stiffness, solve
 from lattice.stiffness import hrennikoff
-from lattice.strain import CellState, circle_of_connections
+from lattice.strain import CellState
 
 
 @dataclass(frozen=True)

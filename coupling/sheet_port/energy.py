@@ -15,7 +15,7 @@ def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
     crushed = e.crushed.elastic + e.crushed.foundation + e.crushed.kinetic_at(drift)
     return {
         "drift_work": drift * e.hold,
-        "received_work": e.others.work + drift * e.others.push,
+        "received_work": e.received_at(drift),
         "sheet_elastic": e.now.elastic,
         "sheet_foundation": e.now.foundation,
         "sheet_kinetic": e.now.kinetic_at(drift),
@@ -29,6 +29,6 @@ def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
         "left_foundation": e.pieces.foundation,
         "left_kinetic": e.pieces.kinetic_at(drift),
         "contact_work": e.contact,
-        "rubble_work": e.rubble,
+        "rubble_work": e.received,
         "sheet_energy_residual": e.residual,
     }

@@ -7,10 +7,10 @@ import numpy as np
 from coupling.interface import Fragment, IntArray
 from coupling.sheet_port.front import Front
 from coupling.sheet_port.motion import Motion
-from lattice.sheet import Sheet
+from lattice.floe import Floe
 
 
-def fragment(sheet: Sheet, motion: Motion, front: Front, nodes: IntArray) -> Fragment:
+def fragment(sheet: Floe, motion: Motion, front: Front, nodes: IntArray) -> Fragment:
     """The piece of these nodes as it is and moves now, less what is crushed off it; the front books that it leaves."""
     g, s, edge = sheet.grid, sheet.state, front.edge
     row, column = np.divmod(nodes, g.ny)

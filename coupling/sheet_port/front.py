@@ -8,14 +8,15 @@ from coupling.contact import OverlapContact
 from coupling.interface import Array, IntArray, Structure
 from coupling.sheet_port.crushed_edge import CrushedEdge
 from coupling.sheet_port.motion import Motion
+from lattice.contact import edge_displacement
+from lattice.floe import Floe
 from lattice.memory import Memory, remember
-from lattice.sheet import Sheet, edge_displacement
 
 
 class Front:
     """Keeps contact and crushed edge in step with the lattice; counts the mass of its ice."""
 
-    def __init__(self, sheet: Sheet, motion: Motion, structure: Structure, contact: OverlapContact):
+    def __init__(self, sheet: Floe, motion: Motion, structure: Structure, contact: OverlapContact):
         g, ice = sheet.grid, sheet.ice
         self._sheet, self._motion, self.contact = sheet, motion, contact
         y = np.asarray(g.y0 + np.arange(g.ny) * g.d, np.float64)

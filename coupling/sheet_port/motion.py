@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from coupling.interface import Array, IntArray
-from lattice.engine import State
-from lattice.sheet import Sheet
+from lattice.floe import Floe
+from lattice.state import State
 
 
 class Motion:
     """The frame of the lattice drifts along +x with ``velocity``; its states are displacements in that frame."""
 
-    def __init__(self, sheet: Sheet, velocity: float):
+    def __init__(self, sheet: Floe, velocity: float):
         self.sheet, self.velocity = sheet, velocity
         self.z_mid = sheet.ice.freeboard - 0.5 * sheet.ice.h  #: middle of the floating sheet [m]
         self.setback = 0.0  #: distance by which the floe starts farther back than its grid [m]

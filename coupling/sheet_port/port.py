@@ -29,9 +29,10 @@ from coupling.sheet_port.motion import Motion
 from coupling.sheet_port.underside import Underside
 from coupling.sheet_port.view import view
 from coupling.sheet_port.watch import Watch
-from lattice.engine import StepError
+from lattice.floe import Floe
+from lattice.loads import NodeLoad
 from lattice.memory import recall, remember
-from lattice.sheet import Sheet
+from lattice.state import StepError
 
 
 class SheetPort:
@@ -39,7 +40,7 @@ class SheetPort:
 
     def __init__(
         self,
-        sheet: Sheet,
+        sheet: Floe,
         structure: Structure,
         law: ContactLaw,
         velocity: float,
@@ -71,7 +72,7 @@ class SheetPort:
         self.sheet.set_window(window_ns / NS)
         parts = self.sheet.parts
         try:
-            out = self.sheet.advance(t, *self._forces(rubble), self.contact, self._release)
+            out = self.sheet.advance(t, self._loads(rubble), self.contact, self._release)
         except (StepError, FloatingPointError) as error:
             raise SimulationError(f"t = {t:.3f} s: {error}") from error
         load = -out.contact_mean.sum(axis=0)
@@ -85,7 +86,7 @@ class SheetPort:
             "drag": r.drag,
             "inertia": r.inertia,
             "held": r.held,
-            "staggering": r.applied,
+            "staggering": r.applied.get("rubble", (0.0, 0.0)),
         }
         return SheetReport(load, [f for f, _ in self._left], events, budget)
 
@@ -99,12 +100,12 @@ class SheetPort:
         )
         self.front.renew()
 
-    def _forces(self, rubble: SheetForces) -> tuple[Array, Array]:
-        """The rubble's forces on all nodes: in plane (n, 2), and w with its rotations (n, 3)."""
+    def _loads(self, rubble: SheetForces) -> list[NodeLoad]:
+        """The external forces on the lattice."""
         n = self.sheet.grid.nodes
         force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
         force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
-        return force_u, force_q
+        return [NodeLoad("rubble", force_u, force_q)]
 
     def _power(self, rubble: SheetForces) -> float:
         """Power of the forces on the nodes that are still in the lattice, by their displacement in the window [W]."""
@@ -115,7 +116,7 @@ class SheetPort:
     def rest_under(self, rubble: SheetForces) -> None:
         """Starts the run in equilibrium with rubble that lies under the sheet, its edge just touching the structure."""
         try:
-            self.sheet.rest_under(*self._forces(rubble))
+            self.sheet.rest_under(self._loads(rubble))
         except StepError as error:
             raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
         self.front.set_back()

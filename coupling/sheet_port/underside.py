@@ -10,7 +10,7 @@ from coupling.interface import Array, IntArray, SheetEdge, SimulationError
 from coupling.sheet_port.crushed_edge import CrushedEdge
 from coupling.sheet_port.motion import Motion
 from coupling.sheet_port.yielding import oscillator
-from lattice.sheet import Sheet
+from lattice.floe import Floe
 
 NodeMotion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity in x and z (n, 2) of nodes
 Yield = tuple[tuple[float, float], tuple[float, float]]  #: stiffness [N/m] and inertia [kg] in x and z
@@ -23,7 +23,7 @@ REACH = 30.0
 class Underside:
     """Gives a `SheetEdge` for every section that asks."""
 
-    def __init__(self, sheet: Sheet, motion: Motion, edge: CrushedEdge, columns_per_section: int):
+    def __init__(self, sheet: Floe, motion: Motion, edge: CrushedEdge, columns_per_section: int):
         self._sheet, self._motion, self._edge, self._columns = sheet, motion, edge, columns_per_section
         self._yield_key: tuple[object, ...] = ()
         self._yields: list[Yield] = []

@@ -7,7 +7,7 @@ import numpy as np
 from coupling.compiled import compiled
 from coupling.interface import Array, BoolArray, IntArray, SheetView
 from coupling.sheet_port.motion import Motion
-from lattice.sheet import Sheet
+from lattice.floe import Floe
 
 
 @compiled()
@@ -26,7 +26,7 @@ def _at_nodes(
     return failed / every, worst
 
 
-def view(sheet: Sheet, motion: Motion) -> SheetView:
+def view(sheet: Floe, motion: Motion) -> SheetView:
     """Positions, damage and utilisation."""
     g, live = sheet.grid, sheet.live_cells
     damage, utilisation = _at_nodes(g.cell_nodes, g.nodes, sheet.intact, live, sheet.utilisation)

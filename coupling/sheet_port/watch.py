@@ -7,13 +7,14 @@ import numpy as np
 from coupling.interface import NS, Array, Event, Fragment
 from coupling.sheet_port import events
 from coupling.sheet_port.motion import Motion
-from lattice.sheet import Outcome, Sheet
+from lattice.floe import Floe
+from lattice.outcome import Outcome
 
 
 class Watch:
     """What it has seen already: whether cells failed in the last window, whether the sheet has left the water."""
 
-    def __init__(self, sheet: Sheet, motion: Motion):
+    def __init__(self, sheet: Floe, motion: Motion):
         self._sheet, self._motion = sheet, motion
         self.draft = sheet.ice.h - sheet.ice.freeboard  #: lift at which the floating sheet leaves the water [m]
         self._quiet, self._afloat = True, True

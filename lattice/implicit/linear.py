@@ -13,11 +13,10 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from lattice.assembly import cell_dof
-from lattice.fronts import Factors
-from lattice.grid import Array, Grid, IntArray
+from lattice.grid import Array, BoolArray, Grid, IntArray
+from lattice.implicit.factors import Factors
 from lattice.memory import Memory, remember
-from lattice.springs import sparse_rows, spring_force
+from lattice.springs import SpringTable, spring_force
 
 MAX_RANK = 120  #: columns of U at which a new factorisation is cheaper than carrying them (60 x 60 to 240 x 240 nodes)
 MAX_AT_ONCE = 4  #: cells removed between two uses at which a new factorisation is cheaper than an update
@@ -26,10 +25,10 @@ MAX_AT_ONCE = 4  #: cells removed between two uses at which a new factorisation 
 class CrackedSystem:
     """Solves ``(scale * K(intact) + diag) x = b`` with some degrees of freedom held at zero."""
 
-    def __init__(self, grid: Grid, rows: Array, intact: np.ndarray, diagonal: Array, scale: float, held: np.ndarray):
+    def __init__(self, grid: Grid, rows: Array, intact: BoolArray, diagonal: Array, scale: float, held: BoolArray):
         self._grid, self._rows = grid, np.sqrt(scale) * rows
-        self._dof = cell_dof(grid, rows.shape[1] // 4)
-        self._diagonal, self._held, self._sparse = diagonal, held, sparse_rows(rows)
+        self._diagonal, self._held, self._springs = diagonal, held, SpringTable.of(grid, rows)
+        self._dof = self._springs.dof
         self._intact = intact.copy()
         self._pending: list[int] = []
         self._factorise()
@@ -71,7 +70,8 @@ class CrackedSystem:
 
     def _elongation(self, x: Array) -> Array:
         """U^T x of all removed cells, for x (n,) or (n, k) that is zero where held."""
-        return (self._rows @ x.reshape(len(x), -1)[self._dof[self._cells]]).reshape(-1, *x.shape[1:])
+        ends = x.reshape(len(x), -1)[self._dof[self._cells]]
+        return np.asarray((self._rows @ ends).reshape(-1, *x.shape[1:]))
 
     def solve(self, b: Array) -> Array:
         """X for a right side b over all degrees of freedom, held ones come back as 0, (n,)."""
@@ -86,7 +86,7 @@ class CrackedSystem:
 
     def spring_force(self, x: Array) -> Array:
         """K x of the springs of the intact cells, (n,)."""
-        return np.asarray(spring_force(self._dof, *self._sparse, self._intact, x))
+        return np.asarray(spring_force(self._springs, self._intact, x))
 
     def compliance(self, dof: IntArray) -> Array:
         """Rows and columns `dof` of the inverse, (m, m); zero for held ones."""
