@@ -95,8 +95,9 @@ class Floe(ABC):
         self.energy.begin(self.state, self.live_cells, self.present, loads)
 
     def answer(self, nodes: IntArray) -> tuple[Array, Array]:
-        """Displacements (k, 2) [m/N] and velocities (k, 2) [m/(N s)] of nodes in x and z, at the end of a window in
-        which one newton has pressed on each of them, in x and in z.
+        """Displacements (k, 2) [m/N] and velocities (k, 2) [m/(N s)] of nodes in x and z under one newton on each.
+
+        At the end of a window in which it has pressed on all of them, in x and in z.
         """
         force_u, force_q = np.zeros((self.grid.nodes, 2)), np.zeros((self.grid.nodes, 3))
         force_u[nodes, 0] = force_q[nodes, 0] = 1.0

@@ -76,7 +76,7 @@ class Ice:
     @property
     def l_c(self) -> float:
         """Characteristic length of the floating plate, (D / rho_w g)^(1/4) [m]."""
-        return (self.D / self.k_f) ** 0.25
+        return float((self.D / self.k_f) ** 0.25)
 
     @property
     def freeboard(self) -> float:
@@ -98,4 +98,4 @@ class Ice:
             )
         sigma_beam = 6.0 * test.failure_load * test.length / (test.width * self.h**2)  # (4.27)
         ratio = d / test.width
-        return sigma_beam * 0.5 * (1.0 / np.sqrt(ratio) + 1.0 / np.sqrt(2.0 - ratio)) * test.factor
+        return float(sigma_beam * 0.5 * (1.0 / np.sqrt(ratio) + 1.0 / np.sqrt(2.0 - ratio)) * test.factor)

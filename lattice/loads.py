@@ -32,15 +32,15 @@ Loads = Sequence[NodeLoad]
 
 
 def keep(loads: Loads, present: BoolArray) -> None:
-    """Takes all loads off nodes that are no longer in the lattice."""
+    """Takes all loads off nodes that are no longer in the lattice. ValueError if two have the same name."""
+    if len({load.name for load in loads}) < len(loads):
+        raise ValueError(f"two loads of one name among {', '.join(load.name for load in loads)}: name each differently")
     for load in loads:
         load.keep(present)
 
 
 def total(loads: Loads, nodes: int) -> tuple[Array, Array]:
     """Sum of all loads on the nodes of a lattice, (n, 2), (n, 3); not to be written to."""
-    if len({load.name for load in loads}) < len(loads):
-        raise ValueError(f"two loads of one name among {', '.join(load.name for load in loads)}: name each differently")
     if not loads:
         return np.zeros((nodes, 2)), np.zeros((nodes, 3))
     force_u, force_q = loads[0].force_u, loads[0].force_q

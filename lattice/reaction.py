@@ -103,7 +103,7 @@ class Support:
 def _sums(
     mean: Mean, start: State, end: State, of: Coefficients, present: BoolArray
 ) -> tuple[float, float, float, float]:
-    """Sums over the nodes that are present: k_f w, C times the path of w, mass times the gain of velocity in z and x."""
+    """Over the nodes that are present: k_f w, C times the path of w, mass times the gain of velocity in z and x."""
     lift = brake = up = ahead = 0.0
     a, b = mean.a, mean.b
     for n in range(len(present)):

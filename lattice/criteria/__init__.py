@@ -1,1 +1,1 @@
-"""When a cell fails: one function per criterion, the table of their names, crack tips, and the judge that a run asks."""
+"""When a cell fails: a function for each criterion, the table of names, crack tips, and the judge of a run."""

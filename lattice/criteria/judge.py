@@ -59,7 +59,7 @@ class Judge:
         return [self.criteria[k].name for k in worst]
 
     def tensile_stress(self, u: Array, q: Array) -> Array:
-        """What is compared with `Standing.limit`: largest of the criteria that have it, 0 without one, (cells,) [Pa]."""
+        """What is compared with `Standing.limit`: 0 without such a criterion, (cells,) [Pa]."""
         stress, one = np.zeros(self.grid.cells), np.ones(self.grid.cells)
         state = CellState.of(self.grid, u, q, limit=one)
         for criterion in self.criteria:

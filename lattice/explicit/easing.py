@@ -12,8 +12,8 @@ import numpy as np
 
 from lattice.grid import Array
 
-#: part by which a cell beside a new crack tip must be loaded further to fail: more than rounding and the ripple of waves
-#: add to a cell that unloads, far less than a tip adds to the cell ahead of it, which (4.31) puts at d/w [-]
+#: part by which a cell beside a new crack tip must be loaded further to fail: more than rounding and small waves add to
+#: a cell that unloads, far less than a tip adds to the cell ahead of it [-]
 RISE = 1e-3
 
 

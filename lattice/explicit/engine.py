@@ -97,8 +97,9 @@ class ExplicitEngine(Engine):
         self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
 
     def set_cells(self, live: BoolArray, limits: Array, present: BoolArray) -> None:
-        """Cells that carry force, the nodes that are still in the lattice, and the tensile limits (cells,) [Pa] at
-        which `march` stops; an infinite one stops it never.
+        """Cells that carry force, their tensile limits (cells,) [Pa], and the nodes that are still in the lattice.
+
+        `march` stops at a limit; an infinite one stops it never.
         """
         g = self.grid
         shape = (g.nx - 1, g.ny - 1)

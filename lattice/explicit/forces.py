@@ -53,7 +53,7 @@ class Made(NamedTuple):
     loss: float  #: work of damping in the sub-steps that were looked at [J]
 
 
-NOTHING = PointForces(*np.zeros((2, 0), np.int64), np.zeros((0, 5)), np.zeros(1, np.int64))
+NOTHING = PointForces(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 5)), np.zeros(1, np.int64))
 
 
 def point_forces(loads: Loads, columns: int) -> PointForces:

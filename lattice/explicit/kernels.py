@@ -24,11 +24,11 @@ from lattice.explicit.layout import (
     PHI_Y,
     U_X,
     U_Y,
-    W,
     HalfSprings,
     Motion,
     Pace,
     PerNode,
+    W,
 )
 from lattice.grid import Array, IntArray
 

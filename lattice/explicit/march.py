@@ -9,7 +9,7 @@ from __future__ import annotations
 from lattice.compiled import compiled
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
-from lattice.explicit.layout import W, Mesh, Motion, Pace, PerNode
+from lattice.explicit.layout import Mesh, Motion, Pace, PerNode, W
 from lattice.explicit.screen import Screen, overloaded
 from lattice.grid import Array, IntArray
 
@@ -72,7 +72,8 @@ def half_power(load: PointForces, touch: Touch, sums: Sums, v: Array) -> float:
     """Half the power of the contact [W]; that of each load is added to its sum."""
     for n in range(len(sums.work)):
         sums.work[n] += 0.5 * power(load.row, load.column, load.force, v, load.first[n], load.first[n + 1])
-    return 0.5 * power(touch.row, touch.column, sums.now, v, 0, len(touch.row))
+    of_contact: float = power(touch.row, touch.column, sums.now, v, 0, len(touch.row))
+    return 0.5 * of_contact
 
 
 @compiled(nogil=True)

@@ -37,8 +37,9 @@ from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
 from coupling.sheet_port.front import Front
 from lattice.energy import EnergyBooks
-from lattice.engine import Engine
-from lattice.linear import CrackedSystem
+from lattice.implicit.edge import Edge
+from lattice.implicit.engine import Engine
+from lattice.implicit.linear import CrackedSystem
 from lattice.sheet import Sheet
 from rubble.contacts import accumulate
 from rubble.layer import RubbleLayer
@@ -58,7 +59,7 @@ DOORS = {
     "edge contact": [
         (OverlapContact, "evaluate"),
         (OverlapContact, "close_window"),
-        (Engine, "_contact_force"),
+        (Edge, "force"),
         (Front, "crush"),
     ],
     "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_release"), (Front, "renew")],

@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lattice.contact import edge_displacement, point_displacement
 from lattice.energy import EnergyBooks
-from lattice.engine import Engine, State, point_displacement
 from lattice.grid import Grid
 from lattice.ice import Ice
-from lattice.sheet import Sheet, edge_displacement
+from lattice.implicit.engine import Engine
+from lattice.sheet import Sheet
+from lattice.state import State
 from lattice.stiffness import hrennikoff
 
 GRID = Grid(9, 7, 3.0)
@@ -76,7 +78,7 @@ def test_what_a_point_feels_and_how_it_moves_belong_together(height):
     force = np.random.default_rng(1).normal(size=(len(nodes), 3))
     push = Push(nodes, force, height)
     stage = e.step(0.0, 0.05, State.rest(GRID.nodes), *no_force(GRID), push).stages[0].state
-    G = e._compliance(nodes, push.height)
+    G = e.edge(nodes, push.height).compliance()
     y = point_displacement(stage.u, stage.q, nodes, push.height)
     np.testing.assert_allclose(np.einsum("iajb,jb->ia", G, force), y, rtol=0, atol=1e-9 * np.abs(y).max())
     np.testing.assert_allclose(G, G.transpose(2, 3, 0, 1), rtol=0, atol=1e-9 * np.abs(G).max())
@@ -87,7 +89,7 @@ def cushioned(height, long_step=1):
         GRID, ICE, hrennikoff(ICE), 0.025, held=back_held(GRID), damping=2000.0, alpha=1e-3, long_step=long_step
     )
     for k in range(80):
-        sheet.advance(0.025 * k, *no_force(GRID), Cushion(height), lambda nodes: None)
+        sheet.advance(0.025 * k, [], Cushion(height), lambda nodes: None)
     return sheet
 
 
@@ -105,7 +107,7 @@ def test_books_with_the_wrong_sign_of_the_height_do_not_close():
     for k in range(40):
         step = e.step(0.025 * k, 0.025, s, *no_force(GRID), contact)
         for books, z in ((right, step.height), (wrong, -step.height)):
-            books.book_step(replace(step, height=z), *no_force(GRID), contact.nodes, live, here)
+            books.book_step(replace(step, height=z), [], contact.nodes, live, here)
         s = step.state
     assert abs(right.residual) < 1e-9 * right.contact
     assert abs(wrong.residual) > 1e-2 * right.contact
@@ -116,7 +118,7 @@ def test_work_is_the_force_times_the_way_of_its_point():
     push = Push(GRID.edge_nodes("x+"), np.tile([-1e5, 3e4, -2e4], (GRID.ny, 1)), 1.4)
     sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=back_held(GRID))
     for k in range(30):
-        sheet.advance(0.05 * k, *no_force(GRID), push, lambda nodes: None)
+        sheet.advance(0.05 * k, [], push, lambda nodes: None)
     work = (push.force * edge_displacement(sheet.state, push.nodes, push.height)).sum()
     below = (push.force * edge_displacement(sheet.state, push.nodes, -push.height)).sum()
     assert sheet.energy.contact == pytest.approx(work, rel=1e-10)
