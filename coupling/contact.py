@@ -54,13 +54,15 @@ class OverlapContact:
         self._dy = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
         self.set_edge(np.empty(0, np.int64), *np.zeros((3, 0)))
 
-    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
-        """Nodes of the edge and, per node (m,) [m], the front of its ice at t = 0, and the width of its ice.
+    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array, lead: Array | None = None) -> None:
+        """Nodes of the edge and, per node (m,) [m], the front of its ice at t = 0, its width, and how far it leads.
 
-        ``y`` is the middle of the node's ice, which is not the node at the sides of the floe.
+        ``y`` is the middle of the node's ice, which is not the node at the sides of the floe. The force acts at the
+        front, ``lead`` (m,) ahead of the node (none in the floe's first row), and the overlap is that of the front.
         """
         self.nodes, self._x, self._width = nodes, x, width
         self.height = np.zeros(len(nodes))  #: of the points of action above the middle of the ice, (m,) [m]
+        self.lead = np.zeros(len(nodes)) if lead is None else lead  #: of the front ahead of its node, (m,) [m]
         self._sample_y = y[:, None] + width[:, None] * self._dy
 
     def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
@@ -123,10 +125,10 @@ class CrushingContact(OverlapContact):
     edge up, against the vertical force. c and the height are set at the end of each window.
     """
 
-    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
+    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array, lead: Array | None = None) -> None:
         """As `OverlapContact.set_edge`; nodes that stay in front keep their damage."""
         known: dict[int, Array] = getattr(self, "_known", {})
-        super().set_edge(nodes, x, y, width)
+        super().set_edge(nodes, x, y, width, lead)
         new = np.append(np.zeros(SAMPLES), self.face * 0.5 * self._h)
         kept = np.array([known.get(n, new) for n in nodes.tolist()]).reshape(-1, SAMPLES + 1)
         self._keep(kept[:, :-1], kept[:, -1])

@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from lattice.contact import EdgeContact, edge_displacement
+from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.judge import Standing
 from lattice.criteria.laws import combined_tension
 from lattice.criteria.table import THESIS, Criterion
@@ -106,7 +106,7 @@ class ExplicitSheet(Floe):
     def _begin(self, t: float, loads: Loads, contact: EdgeContact) -> None:
         e = self.engine
         self._set_cells()
-        touch = touch_at(t, contact, edge_displacement(self.state, contact.nodes, contact.height), self.grid.ny)
+        touch = touch_at(t, contact, edge_displacement(self.state, contact.nodes, lever_of(contact)), self.grid.ny)
         load = point_forces(loads, self.grid.ny)
         e.start(self.state, self.present, (load, touch.at_once()))
         self._book_half(-0.5, loads, load, touch)

@@ -8,7 +8,7 @@ from coupling.contact import OverlapContact
 from coupling.interface import Array, IntArray, Structure
 from coupling.sheet_port.crushed_edge import CrushedEdge
 from coupling.sheet_port.motion import Motion
-from lattice.contact import edge_displacement
+from lattice.contact import edge_displacement, lever_of
 from lattice.floe import Floe
 from lattice.memory import Memory, remember
 
@@ -43,8 +43,9 @@ class Front:
         column = np.flatnonzero(self.meets & (front >= 0))
         row = front[column]
         nodes = row * g.ny + column
-        x_front = g.xy[nodes, 0] + self.edge.lead(row) - self._motion.setback
-        self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column])
+        lead = self.edge.lead(row)
+        x_front = g.xy[nodes, 0] + lead - self._motion.setback
+        self.contact.set_edge(nodes, x_front, self.ice_y[column], self.edge.width[column], lead)
         self._column = column
 
     def set_back(self) -> None:
@@ -55,7 +56,7 @@ class Front:
 
     def displacement(self) -> Array:
         """Of the points of contact in the drifting frame, (m, 3) [m]."""
-        return edge_displacement(self._sheet.state, self.contact.nodes, self.contact.height)
+        return edge_displacement(self._sheet.state, self.contact.nodes, lever_of(self.contact))
 
     def crush(self) -> None:
         """Takes the overlapped ice off the edge, and rows of which nothing is left out of the lattice."""
