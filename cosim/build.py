@@ -23,7 +23,7 @@ from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
-from rubble.layer import Domain
+from rubble.domain import Domain
 from rubble.physics import RubblePhysics
 
 

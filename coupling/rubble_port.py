@@ -12,13 +12,16 @@ from coupling.handover import BlockBirth, births, centre_of, momenta_of
 from coupling.interface import NS, Array, BlockTable, Fragment, IntArray, Phase, SheetEdge, SheetForces, SimulationError
 from coupling.structure import Structure
 from rubble import snapshot
-from rubble.block import Block
-from rubble.geometry import contiguous, moments
+from rubble.block import Block, Slab, energy_of
+from rubble.cut import Cut, plane, revolved
+from rubble.domain import Domain
+from rubble.energy import energy_terms
+from rubble.geometry import area_moments, contiguous
 from rubble.initial import Pile, rest, settle
-from rubble.layer import Domain, RubbleLayer
+from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
-from rubble.stock import books, energy_of
+from rubble.sheet import SheetMotion
 
 OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
 LID = 1e9  #: stiffness of the still sheet under which initial rubble settles [N/m]
@@ -65,13 +68,13 @@ class RubblePort:
         """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
         bottom, top = max(structure.bottom, -domain.depth), structure.top
 
-        def solids(y: float) -> list[Array]:
+        def solids(y: float) -> Cut:
             outline = structure.section_outline(y, bottom, top, OUTLINE_TOLERANCE)
-            return convex_parts(outline, back=None if structure.revolved else float(outline[:, 0].max()) + 100.0)
+            if structure.revolved:
+                return revolved(convex_parts(outline))
+            return plane(convex_parts(outline, back=float(outline[:, 0].max()) + 100.0))
 
-        self.layer = RubbleLayer(
-            physics, pitch, origin=origin, solids=solids, revolved=structure.revolved, domain=domain, threads=threads
-        )
+        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, domain=domain, threads=threads)
         self.physics, self.columns_per_section = physics, columns_per_section
         self.structure = structure
         self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
@@ -101,20 +104,11 @@ class RubblePort:
         """Puts one block into its section, outside the structure; None if nothing is left of it."""
         key = self.layer.key_at(b.y)
         polygon = self.layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
-        if len(polygon) < 3 or moments(contiguous(polygon))[0] < SMALLEST * self.physics.thickness**2:
+        if len(polygon) < 3 or area_moments(contiguous(polygon)).area < SMALLEST * self.physics.thickness**2:
             return None
+        slab = Slab(polygon, b.cuts, b.widths, self.physics.rho_i, b.angle)
         number = self.layer.add_block(
-            key,
-            polygon,
-            b.cuts,
-            b.widths,
-            self.physics.rho_i,
-            b.velocity.tolist(),
-            b.omega,
-            b.y,
-            self._fragments,
-            b.angle,
-            alone=False,
+            key, slab, b.velocity.tolist(), b.omega, y=b.y, fragment=self._fragments, alone=False
         )
         block = self.layer.block(number)
         self._born += energy_of(block, self.physics)
@@ -174,19 +168,20 @@ class RubblePort:
             self.layer.remove_sheet(key)
         self._edges = edges
         for key, e in edges.items():
+            applied = _on_edge(carried, e)
             self.layer.set_sheet(
-                key, e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, e.inertia, _on_edge(carried, e)
+                key, SheetMotion(e.x, e.z, e.front, e.velocity, e.thickness, e.stiffness, e.inertia, applied)
             )
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
-        crushed = self.layer.crushed_mass
+        crushed = self.layer.crushed.mass
         try:
             self.layer.advance(round(window_ns / NS / self.physics.substep))
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
-        if self.layer.crushed_mass > crushed:
-            self.on_crushed(self.layer.crushed_mass - crushed)
+        if self.layer.crushed.mass > crushed:
+            self.on_crushed(self.layer.crushed.mass - crushed)
         self._forces = self._on_sheet()
 
     def _on_sheet(self) -> SheetForces:
@@ -221,25 +216,14 @@ class RubblePort:
         self._born = saved.born.copy()
 
     def blocks(self) -> BlockTable:
-        t = self.layer.table()
-        return BlockTable(
-            t.id,
-            t.section,
-            t.phase,
-            t.mass,
-            t.width,
-            t.position,
-            t.angle,
-            t.velocity,
-            t.omega,
-            t.load,
-            t.outline,
-            t.offset,
-        )
+        columns = self.layer.columns()
+        sliding = columns.pop("sliding")
+        return BlockTable(phase=np.where(sliding, Phase.SLIDING, Phase.ROTATING).astype(np.int64), **columns)
 
     def load(self) -> Array:
         """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
-        return self.layer.load_by_phase(list(Phase))
+        parts = {Phase.ROTATING: self.layer.load_of(sliding=False), Phase.SLIDING: self.layer.load_of(sliding=True)}
+        return np.array([parts.get(phase, np.zeros(3)) for phase in Phase])
 
     @property
     def budget(self) -> Pairs:
@@ -254,17 +238,21 @@ class RubblePort:
 
     @property
     def cleared_mass(self) -> float:
-        return self.layer.cleared_mass
+        return self.layer.gone.mass
 
     @property
     def energy(self) -> dict[str, float]:
-        """Energy of the blocks by term [J]; see `rubble.stock`."""
-        return {**books(self.layer), "born_kinetic": float(self._born[0]), "born_potential": float(self._born[1])}
+        """Energy of the blocks by term [J]; see `rubble.energy`."""
+        return {
+            **energy_terms(self.layer),
+            "born_kinetic": float(self._born[0]),
+            "born_potential": float(self._born[1]),
+        }
 
     @property
     def momenta(self) -> dict[str, float]:
         """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
-        lost = {"cleared": self.layer.cleared_momentum, "crushed": self.layer.crushed_momentum}
+        lost = {"cleared": self.layer.gone.momentum, "crushed": self.layer.crushed.momentum}
         return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
 
 

@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from rubble.geometry import Array, contiguous
+from rubble.arrays import Array
+from rubble.geometry import contiguous
 
 
 def convex_parts(face: Array, back: float | None = None) -> list[Array]:
@@ -39,4 +40,5 @@ def _closed(part: Array, back: float | None) -> Array:
             )
         rear = np.array([(back, part[-1, 1]), (back, part[0, 1])])
     loop = np.concatenate([part, rear])
-    return loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]
+    kept: Array = loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]
+    return kept

@@ -10,7 +10,7 @@ from coupling.handover import births, centre_of, momenta_of
 from coupling.interface import Fragment
 from coupling.rubble_port import RubblePort
 from coupling.structure import plane_slope
-from rubble.layer import Domain
+from rubble.domain import Domain
 from rubble.physics import RubblePhysics
 
 D, H = 2.0, 3.0
