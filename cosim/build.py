@@ -19,11 +19,12 @@ from coupling.start import lay_rubble
 from coupling.steering import ByPower, Steering, fixed
 from coupling.structure import DEEP, cone, plane_slope
 from lattice.explicit_sheet import ExplicitSheet
+from lattice.floe import Floe
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
-from rubble.layer import Domain
+from rubble.domain import Domain
 from rubble.physics import RubblePhysics
 
 
@@ -93,7 +94,7 @@ def build_structure(scenario: Scenario) -> Structure:
     return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth, breaking=s.breaking)
 
 
-def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
+def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     """The floe, its front on the structure's axis plane just touching the face with the edge that meets it first."""
     s = scenario.sheet
     front = structure.foremost_x(ice.freeboard if structure.faces_down else ice.freeboard - ice.h)

@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from rubble.geometry import Array, contiguous
+from rubble.arrays import Array
+from rubble.geometry import contiguous
 
 
 def convex_parts(face: Array, back: Array | float | None = None) -> list[Array]:
@@ -35,7 +36,8 @@ def _closed(part: Array, back: Array | float | None) -> Array:
     else:
         rear = _rear(part, np.asarray(back, dtype=np.float64))
     loop = np.concatenate([part, rear])
-    return loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]
+    kept: Array = loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]
+    return kept
 
 
 def _rear(part: Array, back: Array) -> Array:
@@ -46,11 +48,8 @@ def _rear(part: Array, back: Array) -> Array:
     x, z = back.T
     ends = [(float(np.interp(at, z, x)), at) for at in (low, high)]
     line = np.array([ends[0], *back[(z > low) & (z < high)].tolist(), ends[1]])
-    if (line[:, 0] < np.interp(line[:, 1], part[:, 1], part[:, 0]) - 1e-9).any() or line[:, 0].max() <= part[
-        :, 0
-    ].max():
-        raise ValueError(
-            f"back of the structure at {line[:, 0].max():g} m lies ahead of its face; "
-            f"give more than {part[:, 0].max():g} m"
-        )
+    rearmost, face = float(line[:, 0].max()), float(part[:, 0].max())
+    ahead = line[:, 0] < np.interp(line[:, 1], part[:, 1], part[:, 0]) - 1e-9
+    if ahead.any() or rearmost <= face:
+        raise ValueError(f"back of the structure at {rearmost:g} m lies ahead of its face; give more than {face:g} m")
     return line[::-1]

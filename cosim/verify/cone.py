@@ -16,7 +16,9 @@ import numpy as np
 from cosim.verify.case import CaseResult, near
 from coupling.rubble_port import OUTLINE_TOLERANCE
 from coupling.structure import Revolved, cone
-from rubble.geometry import Array
+from rubble.arrays import Array
+from rubble.block import Slab
+from rubble.cut import revolved
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -54,8 +56,9 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
         physics,
         WIDTH,
         origin=y,
-        revolved=True,
-        solids=lambda at: convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE)),
+        solids=lambda at: revolved(
+            convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE))
+        ),
     )
     z, angle = -1.5, 2.0 * np.pi * (np.arange(128) + 0.5) / 128
     n = structure.normal(y, z)
@@ -63,7 +66,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
     middle = np.array([float(structure.face_x(y, z)), z]) + (SIZE - 1e-4) * m
     outline = middle + SIZE * np.column_stack([np.cos(angle), np.sin(angle)])
     ends = np.array([outline[:, 0].min(), outline[:, 0].max()])
-    number = layer.add_block(0, outline, ends, np.array([WIDTH]), p["rho_i"], (0.0, 0.0), 0.0, y, 0)
+    number = layer.add_block(0, Slab(outline, ends, np.array([WIDTH]), p["rho_i"]), y=y)
     lift = (p["rho_w"] / p["rho_i"] - 1.0) * p["g"] * layer.mass
     lock_rotation(layer, number)
     thrust(layer, number, p["thrust"] * lift)

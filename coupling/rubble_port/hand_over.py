@@ -6,11 +6,10 @@ import numpy as np
 
 from coupling.interface import Array, Fragment, HandOver
 from coupling.rubble_port.births import BlockBirth, births, centre_of, momenta_of
-from rubble.block import Block
-from rubble.geometry import contiguous, moments
+from rubble.block import Block, Slab, energy_of
+from rubble.geometry import area_moments, contiguous
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
-from rubble.stock import energy_of
 
 #: share of h^2 below which what is left of a trimmed block counts as crushed: a sliver as long as the ice is thick
 #: would be thinner than a fifth of the overlap that contacts leave alone (0.5 % of h), so no contact would hold it
@@ -52,21 +51,10 @@ class Arrivals:
         """Puts one block into its section, outside the structure; None if nothing is left of it."""
         key = layer.key_at(b.y)
         polygon = layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
-        if len(polygon) < 3 or moments(contiguous(polygon))[0] < SMALLEST * self._physics.thickness**2:
+        if len(polygon) < 3 or area_moments(contiguous(polygon)).area < SMALLEST * self._physics.thickness**2:
             return None
-        number = layer.add_block(
-            key,
-            polygon,
-            b.cuts,
-            b.widths,
-            self._physics.rho_i,
-            b.velocity.tolist(),
-            b.omega,
-            b.y,
-            self.fragments,
-            b.angle,
-            alone=False,
-        )
+        slab = Slab(polygon, b.cuts, b.widths, self._physics.rho_i, b.angle)
+        number = layer.add_block(key, slab, b.velocity.tolist(), b.omega, y=b.y, fragment=self.fragments, alone=False)
         block = layer.block(number)
         self.born += energy_of(block, self._physics)
         return block

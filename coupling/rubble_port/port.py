@@ -25,10 +25,13 @@ from coupling.interface import (
 )
 from coupling.rubble_port.hand_over import Arrivals
 from rubble import snapshot
-from rubble.layer import Domain, RubbleLayer
+from rubble.cut import Bearing, Cut, faceted
+from rubble.domain import Domain
+from rubble.energy import energy_terms
+from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
-from rubble.stock import books
+from rubble.sheet import SheetMotion
 
 OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
 
@@ -61,18 +64,14 @@ class RubblePort:
         """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
         bottom, top = max(structure.bottom, -domain.depth), structure.top
 
-        def solids(y: float) -> list[Array]:
-            return convex_parts(*structure.section(y, bottom, top, OUTLINE_TOLERANCE))
+        def solids(y: float) -> Cut:
+            def bearing(x: float, z: float) -> Bearing:
+                constant, radial = structure.bearing(x, y, z)
+                return Bearing(float(constant), float(radial))
 
-        self.layer = RubbleLayer(
-            physics,
-            pitch,
-            origin=origin,
-            solids=solids,
-            revolved=bool(structure.bearing(-1.0, 0.0, 0.0)[1]),
-            domain=domain,
-            threads=threads,
-        )
+            return faceted(convex_parts(*structure.section(y, bottom, top, OUTLINE_TOLERANCE)), bearing)
+
+        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, domain=domain, threads=threads)
         self.physics = physics
         self.structure = structure
         self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
@@ -94,19 +93,18 @@ class RubblePort:
             self.layer.remove_sheet(key)
         self._edges = edges
         for key, e in edges.items():
-            self.layer.set_sheet(
-                key, e.x, e.z, e.front, e.velocity, self.physics.thickness, e.stiffness, e.inertia, _on_edge(carried, e)
-            )
+            applied, h = _on_edge(carried, e), self.physics.thickness
+            self.layer.set_sheet(key, SheetMotion(e.x, e.z, e.front, e.velocity, h, e.stiffness, e.inertia, applied))
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
-        crushed = self.layer.crushed_mass
+        crushed = self.layer.crushed.mass
         try:
             self.layer.advance(round(window_ns / NS / self.physics.substep))
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
-        if self.layer.crushed_mass > crushed:
-            self.on_crushed(self.layer.crushed_mass - crushed)
+        if self.layer.crushed.mass > crushed:
+            self.on_crushed(self.layer.crushed.mass - crushed)
         self.take_forces()
 
     def take_forces(self) -> None:
@@ -145,25 +143,14 @@ class RubblePort:
 
     def blocks(self) -> BlockTable:
         """All blocks at the end of the window."""
-        t = self.layer.table()
-        return BlockTable(
-            t.id,
-            t.section,
-            t.phase,
-            t.mass,
-            t.width,
-            t.position,
-            t.angle,
-            t.velocity,
-            t.omega,
-            t.load,
-            t.outline,
-            t.offset,
-        )
+        columns = self.layer.columns()
+        sliding = columns.pop("sliding")
+        return BlockTable(phase=np.where(sliding, Phase.SLIDING, Phase.ROTATING).astype(np.int64), **columns)
 
     def load(self) -> Array:
         """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
-        return self.layer.load_by_phase(list(Phase))
+        parts = {Phase.ROTATING: self.layer.load_of(sliding=False), Phase.SLIDING: self.layer.load_of(sliding=True)}
+        return np.array([parts.get(phase, np.zeros(3)) for phase in Phase])
 
     @property
     def budget(self) -> ForcePairs:
@@ -180,18 +167,18 @@ class RubblePort:
     @property
     def cleared_mass(self) -> float:
         """Mass of all blocks that have left [kg]."""
-        return self.layer.cleared_mass
+        return self.layer.gone.mass
 
     @property
     def energy(self) -> dict[str, float]:
-        """Energy of the blocks by term [J]; see `rubble.stock`."""
+        """Energy of the blocks by term [J]; see `rubble.energy`."""
         kinetic, potential = self._arrivals.born
-        return {**books(self.layer), "born_kinetic": float(kinetic), "born_potential": float(potential)}
+        return {**energy_terms(self.layer), "born_kinetic": float(kinetic), "born_potential": float(potential)}
 
     @property
     def momenta(self) -> dict[str, float]:
         """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
-        lost = {"cleared": self.layer.cleared_momentum, "crushed": self.layer.crushed_momentum}
+        lost = {"cleared": self.layer.gone.momentum, "crushed": self.layer.crushed.momentum}
         return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
 
 

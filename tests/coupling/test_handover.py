@@ -10,7 +10,7 @@ from coupling.interface import Fragment
 from coupling.rubble_port import RubblePort
 from coupling.rubble_port.births import births, centre_of, momenta_of
 from coupling.structure import plane_slope
-from rubble.layer import Domain
+from rubble.domain import Domain
 from rubble.physics import RubblePhysics
 
 D, H = 2.0, 3.0
