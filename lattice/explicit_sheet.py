@@ -118,13 +118,13 @@ class ExplicitSheet(Floe):
         steps = min(self.block, e.sub_steps - done)
         touch = e.touch(t + (done + 0.5 * steps) * e.dt, contact)
         before = e.displacement()
-        holding, at = self._holding(), e.touching(contact)
+        holding, at = self._holding(load), e.touching(contact)
         out = e.march(steps, load, touch, self._lively)
         time = out.steps * e.dt
         window.note(time, before, e.displacement(), load, self.grid.ny, self.support.held)
         window.impulse[contact.nodes] += time * out.contact
         self._book(out, loads, load, contact, at)
-        self.energy.hold += 0.5 * time * (holding + self._holding())
+        self.energy.hold += 0.5 * time * (holding + self._holding(load))
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > LIVELY * self.energy.stored
@@ -195,10 +195,12 @@ class ExplicitSheet(Floe):
 
     # ---- energy ------------------------------------------------------------------------------------------------
 
-    def _holding(self) -> float:
-        """Force along x at the held edge now [N]."""
+    def _holding(self, load: PointForces) -> float:
+        """Force along x at the held edge now, less what loads bring to it at once [N]."""
         u, _ = self.engine.displacement(-self.engine.alpha / self.engine.dt)  # x + alpha v
-        return self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
+        springs = self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
+        on_held = self.support.held[load.row * self.grid.ny + load.column]
+        return springs - float(load.force[on_held, U_X].sum())
 
     def _book(self, out: Marched, loads: Loads, load: PointForces, contact: EdgeContact, at: Array) -> None:
         """Books sub-steps before which the points of the contact were ``at`` (m, 3) [m]."""
