@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cosim.build import build, build_structure, structure_mesh
+from cosim.build import build, build_structure
 from cosim.run import run_scenario
 from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
@@ -138,7 +138,7 @@ def test_old_files_break_downwards():
 @pytest.mark.parametrize("name", [PLANE, CONE])
 def test_the_mesh_is_the_structure(name):
     structure = build_structure(load_scenario(name))
-    points, triangles = structure_mesh(structure, 20.0)
+    points, triangles = structure.mesh(20.0)
     assert points[:, 2].max() == structure.top
     assert triangles.max() < len(points)
     x = structure.face_x(0.0, points[:, 2])
