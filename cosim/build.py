@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from cosim.observer import RunInfo
-from cosim.scenario import Scenario
+from cosim.scenario.scenario import Scenario
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, Array, IntArray
 from coupling.ledger import Ledger

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from coupling.interface import SimulationError
+
 
 class InputError(ValueError):
     """Bad input (exit 2): the message names what is wrong, which value, and what to do."""
@@ -9,3 +11,16 @@ class InputError(ValueError):
 
 class FailedError(RuntimeError):
     """Good input, but it did not work (exit 1): the message says what to do."""
+
+
+def explain(error: Exception) -> tuple[str, int]:
+    """The line and the exit code of an error; an unexpected one is named as such."""
+    if isinstance(error, InputError):
+        return str(error), 2
+    if isinstance(error, FailedError | SimulationError):
+        return str(error), 1
+    if hasattr(error, "format_message"):  # the argument parser's own
+        return f"{error.format_message()} (`cosim --help` shows the commands)", 2
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}; check the path", 2
+    return f"unexpected {type(error).__name__}: {error}; set COSIM_TRACEBACK=1 to see where, and report it", 1

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 from coupling.interface import Array, Frame, IntArray
 
 if TYPE_CHECKING:
-    from cosim.scenario import Scenario
+    from cosim.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True)

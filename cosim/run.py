@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from cosim.analysis.run_data import COMPONENTS
+from cosim.analysis.sustained import SUSTAINED, running_mean
 from cosim.build import build, run_info
 from cosim.observer import Observer
-from cosim.scenario import Scenario
-from cosim.sustained import SUSTAINED, running_mean
+from cosim.scenario.scenario import Scenario
 from coupling.interface import NS, PHASES, Array, Event, Frame
 from coupling.scheduler import Scheduler
-
-COMPONENTS = ("fx", "fy", "fz", "f")
 
 
 class Peaks:

@@ -7,10 +7,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from cosim.analysis.peaks import at_peak
+from cosim.analysis.run_data import RunData
 from cosim.baselines.methods import design_loads
-from cosim.features import at_peak
-from cosim.run_data import RunData
-from cosim.scenario import ScenarioModel
+from cosim.scenario.model import ScenarioModel
 
 
 def beside(run: RunData) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from math import radians
 from typing import Any
 
 from cosim.baselines.case import Case
-from cosim.scenario import ScenarioModel
+from cosim.scenario.model import ScenarioModel
 
 RUBBLE_HEIGHT = 2.0  #: thicknesses
 POROSITY = 0.3  #: IceFloe, test GLA

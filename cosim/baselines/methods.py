@@ -9,7 +9,7 @@ from cosim.baselines.croasdale import croasdale
 from cosim.baselines.inputs import Given, given
 from cosim.baselines.nevel import nevel
 from cosim.baselines.ralston import ralston_johansen, ralston_tresca
-from cosim.scenario import ScenarioModel
+from cosim.scenario.model import ScenarioModel
 
 _RUBBLE = ("rubble_height", "porosity", "rubble_slope", "friction_angle", "cohesion", "friction_ice_ice")
 _RIDE = ("ride_up_thickness", "top_diameter")

@@ -13,7 +13,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from cosim.verify import CASES, CaseResult, Quantity, run
+from cosim.verify.case import CaseResult, Quantity
+from cosim.verify.cases import CASES, run
 
 
 def verify_command(

@@ -18,7 +18,9 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from cosim.build import build
-from cosim.scenario import Scenario, ScenarioError, load_scenario
+from cosim.scenario.errors import ScenarioError
+from cosim.scenario.loading import load_scenario
+from cosim.scenario.scenario import Scenario
 from cosim.verify.case import CaseResult, Quantity, at_most, near, value
 from cosim.verify.mohr_figure import mohr_figure
 from cosim.verify.mohr_record import Record, Witness

@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
+from cosim.analysis.run_data import RunData
 from cosim.baselines.beside import beside
 from cosim.baselines.methods import METHODS, design_loads
-from cosim.report import write_report
-from cosim.run_data import RunData
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
+from cosim.show.report import write_report
 
 GLA, PLANE, FLOE = "icefloe_gla_upward_cone", "upward_plane", "van_vliet_2018_floe_165m"
 

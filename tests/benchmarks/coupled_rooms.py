@@ -29,8 +29,8 @@ import coupling.scheduler
 import lattice.sheet
 import rubble.layer
 from cosim.build import build, run_info
-from cosim.recording import Recorder
-from cosim.scenario import load_scenario
+from cosim.recording.writer import Recorder
+from cosim.scenario.loading import load_scenario
 from coupling.contact import OverlapContact
 from coupling.ledger import Ledger
 from coupling.rubble_port import RubblePort

@@ -34,7 +34,7 @@ from scipy.integrate import ode
 from threadpoolctl import threadpool_limits
 
 from cosim.build import build
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
 
 FLOE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_165m"

@@ -35,7 +35,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from cosim.build import build
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 from coupling.scheduler import Scheduler
 
 FLOE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_165m"

@@ -21,7 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from cosim.build import build_ice, build_sheet, build_structure
-from cosim.scenario import Scenario, load_scenario
+from cosim.scenario.loading import load_scenario
+from cosim.scenario.scenario import Scenario
 from coupling.contact import ContactLaw
 from coupling.interface import NS, SheetForces, SimulationError
 from coupling.sheet_port import SheetPort

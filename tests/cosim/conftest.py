@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from cosim.recording import Recorder
-from cosim.scenario import load_scenario
+from cosim.recording.writer import Recorder
+from cosim.scenario.loading import load_scenario
 
 SHORT = ("scenario.duration='12 s'", "sheet.nodes=[40,40]", "recording.every='500 ms'")
 

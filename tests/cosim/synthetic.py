@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cosim.observer import RunInfo
-from cosim.scenario import Scenario
+from cosim.scenario.scenario import Scenario
 from coupling.interface import BlockTable, Event, Frame, Phase, SheetView
 
 SPLIT, CIRCUMFERENTIAL, HAND_OVER = 4.0, 6.0, 6.0  #: times of the events [s]

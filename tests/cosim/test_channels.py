@@ -5,8 +5,9 @@ import pytest
 from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from cosim import channels, messages, pictures, scenes, shapes
-from cosim.scenario import load_scenario
+from cosim.recording import channels, messages, scenes, shapes
+from cosim.scenario.loading import load_scenario
+from cosim.show import pictures
 from coupling.interface import BlockTable, Event
 
 

@@ -6,11 +6,12 @@ import math
 import numpy as np
 import pytest
 
-from cosim import compare, features
-from cosim.recording import read_run
-from cosim.reference import FeatureError, load_reference, parse_reference
-from cosim.run_data import RunData
-from cosim.scenario import find_scenarios
+from cosim.analysis import compare, features, peaks
+from cosim.analysis.instants import first_contact
+from cosim.analysis.reference import FeatureError, load_reference, parse_reference
+from cosim.analysis.run_data import RunData
+from cosim.recording.reader import read_run
+from cosim.scenario.finding import find_scenarios
 from coupling.interface import Event
 
 
@@ -45,14 +46,14 @@ def test_an_empty_run_has_no_features():
     empty = RunData("x", {"window_ns": "1"}, np.empty(0, int), np.empty((0, 3, 3)))
     assert features.peak_load(empty) is None
     assert features.peak_time(empty) is None
-    assert features.first_contact(empty) is None
-    assert features.peaks(empty)["fx"]["value"] is None
+    assert first_contact(empty) is None
+    assert peaks.peaks(empty)["fx"]["value"] is None
 
 
 def test_times_count_from_first_contact():
     t = 0.1 * np.arange(1, 101)
     run = series(t, np.where(t > 2.05, t, 0.0))
-    assert features.first_contact(run) == pytest.approx(2.0, rel=1e-9)
+    assert first_contact(run) == pytest.approx(2.0, rel=1e-9)
     assert features.peak_time(run) == pytest.approx(8.0, rel=1e-9)
 
 
@@ -67,7 +68,7 @@ def test_windows_of_different_length_have_the_same_period_level_and_first_contac
     t = np.sort(np.concatenate((0.1 * np.arange(1, 501), 0.1 * np.arange(300, 500) + 0.05)))
     swing = series(t, 5.0 + 0.1 * t + np.sin(2 * math.pi * t / 2.5))
     assert features.load_period(swing) == pytest.approx(2.5, rel=0.02)
-    assert features.first_contact(series(t, np.where(t > 35.01, 1.0, 0.0))) == pytest.approx(35.0, rel=1e-9)
+    assert first_contact(series(t, np.where(t > 35.01, 1.0, 0.0))) == pytest.approx(35.0, rel=1e-9)
     broken = Event(round(20e9), "hand_over", (9.0, 0.0, 0.0), 3, (0.0, 0.0, 0.0), "")
     run = series(t, 0.0, [broken])
     run.load[:, 2, 0] = np.where(t < 40.01, 1.0, 3.0)  # sliding: half of the time 1, half of it 3

@@ -6,11 +6,12 @@ import itertools
 import numpy as np
 import pytest
 
-from cosim import cycles, features, messages, recording
-from cosim.moments import encounters
-from cosim.recording import read_run
-from cosim.reference import parse_reference
-from cosim.run_data import RunData
+from cosim.analysis import cycles, features
+from cosim.analysis.instants import encounters
+from cosim.analysis.reference import parse_reference
+from cosim.analysis.run_data import RunData
+from cosim.recording import messages, reader
+from cosim.recording.reader import read_run
 from coupling.interface import NS, Event
 
 DT = 0.05
@@ -136,7 +137,7 @@ def test_a_reference_may_name_them():
 def test_phases_add_up_to_the_total_at_every_sample(run_file):
     """The recorded totals are the sums of the recorded phases, to 1e-9."""
     run, totals = read_run(run_file), []
-    for _, _, data in recording.messages(run_file, ["/load/structure"]):
+    for _, _, data in reader.messages(run_file, ["/load/structure"]):
         message = messages.Load.FromString(data)
         totals.append((message.fx, message.fy, message.fz))
     assert np.array(totals) == pytest.approx(run.load.sum(axis=1), rel=1e-9)

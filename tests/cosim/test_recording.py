@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim.recording import Recorder, RecordingError, messages, read_run, recover
-from cosim.scenario import load_scenario
+from cosim.recording.reader import RecordingError, messages, read_run
+from cosim.recording.recover import recover
+from cosim.recording.writer import Recorder
+from cosim.scenario.loading import load_scenario
 
 WINDOWS = 240  # 12 s of 50 ms
 

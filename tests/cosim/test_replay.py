@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim import replay, shapes
 from cosim.errors import FailedError, InputError
+from cosim.recording import shapes
+from cosim.show import replay, viewer
 from coupling.interface import Phase
 
 
@@ -66,6 +67,6 @@ def test_picture_without_a_screen(run_file, tmp_path):
 def test_without_a_driver_the_remedy_is_named(monkeypatch, run_file, tmp_path):
     """The viewer ends at once when it finds no driver."""
     real = subprocess.Popen
-    monkeypatch.setattr(replay.subprocess, "Popen", lambda *a, **k: real(["false"]))
+    monkeypatch.setattr(viewer.subprocess, "Popen", lambda *a, **k: real(["false"]))
     with pytest.raises(FailedError, match="mesa-vulkan-drivers"):
         replay.screenshot(run_file, tmp_path / "x.png")

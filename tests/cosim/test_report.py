@@ -5,11 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cosim.features import shares_at_peak
-from cosim.report import ENERGY, content, write_report
+from cosim.analysis.peaks import shares_at_peak
+from cosim.analysis.run_data import RunData
 from cosim.run import run_scenario
-from cosim.run_data import RunData
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
+from cosim.show.figures import ENERGY
+from cosim.show.report import content, write_report
 from coupling.budget import TERMS
 from coupling.energy import STORES
 from coupling.interface import Event

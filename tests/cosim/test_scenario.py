@@ -6,8 +6,12 @@ import tomllib
 
 import pytest
 
-from cosim.reference import load_reference
-from cosim.scenario import Scenario, ScenarioError, ScenarioModel, find_scenarios, load_scenario
+from cosim.analysis.reference import load_reference
+from cosim.scenario.errors import ScenarioError
+from cosim.scenario.finding import find_scenarios
+from cosim.scenario.loading import load_scenario
+from cosim.scenario.model import ScenarioModel
+from cosim.scenario.scenario import Scenario
 
 CASES = [
     "van_vliet_2018_floe_165m",

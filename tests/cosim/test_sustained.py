@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cosim.sustained import running_mean
+from cosim.analysis.sustained import running_mean
 
 NS = 1_000_000_000
 

@@ -8,12 +8,12 @@ import sys
 
 import pytest
 
-from cosim import sweep as sweeping
 from cosim.errors import FailedError, InputError
-from cosim.sweep import sweep, with_ratios
-from cosim.sweep_command import show, write_csv
-from cosim.tornado import tornado
-from cosim.variants import Axis, Variant, parse_axis, variants
+from cosim.show.tornado import tornado
+from cosim.study import sweep as sweeping
+from cosim.study.command import show, write_csv
+from cosim.study.sweep import sweep, with_ratios
+from cosim.study.variants import Axis, Variant, parse_axis, variants
 
 CASE = "van_vliet_2018_floe_55m_centre"
 TINY = ("sheet.nodes=[12, 12]", "scenario.duration='1 s'", "rubble.initial_volume='60 m^3'")
@@ -183,7 +183,7 @@ def test_a_wrong_base_is_refused_before_anything_runs():
 
 def test_a_load_that_still_grows_at_the_end_is_pointed_out(content, monkeypatch):
     lines = []
-    monkeypatch.setattr("cosim.sweep_command.print_line", lines.append)
+    monkeypatch.setattr("cosim.study.command.print_line", lines.append)
     times = [{"fx_time": 1.0, "fz_time": 0.5}, {"fx_time": 0.5, "fz_time": 0.9}, {"fx_time": 0.1, "fz_time": 0.1}, {}]
     show({**content, "variants": [row | t for row, t in zip(content["variants"], times, strict=True)]})
     assert [line.split(":")[0] for line in lines] == ["largest load at the end", "failed"]

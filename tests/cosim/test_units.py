@@ -5,7 +5,7 @@ import math
 import pytest
 from pydantic_core import PydanticCustomError
 
-from cosim.units import Unit, to_si
+from cosim.scenario.units import Unit, to_si
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from cosim.verify import CASES, run
 from cosim.verify.case import at_most, near, plain, value
+from cosim.verify.cases import CASES, run
 from cosim.verify.command import verify_command
 
 APP = typer.Typer()

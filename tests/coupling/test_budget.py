@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cosim.build import build
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 from coupling.budget import AXES, TERMS, force_budget
 from coupling.rubble_port import RubblePort
 from lattice.engine import NoContact

@@ -7,7 +7,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from cosim.build import build
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 
 QUICK = ["sheet.nodes=[20, 20]", "drift.velocity='0.4 m/s'", "contact.strength='800 kPa'", "scenario.duration='10 s'"]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cosim.build import build
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 from coupling.interface import SimulationError
 from coupling.yielding import oscillator
 

@@ -5,7 +5,7 @@ import pytest
 
 from cosim.build import build
 from cosim.run import run_scenario
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 
 CASES = ["basin_2010_floe_165m", "basin_2010_floe_34x68m", "basin_2010_floe_55m_centre", "basin_2010_floe_55m_corner"]
 COMMON = ("ice", "water", "structure", "contact", "drift", "fracture", "coupling")

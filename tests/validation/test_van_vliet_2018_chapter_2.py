@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cosim.verify import CaseResult, run
+from cosim.verify.case import CaseResult
+from cosim.verify.cases import run
 from cosim.verify.eigenfrequencies import CONTINUUM, LATTICE
 from lattice import continuum, spectrum
 from lattice.grid import Grid

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cosim.verify import run
+from cosim.verify.cases import run
 from cosim.verify.poisson import contraction
 from lattice.assembly import assemble, in_plane_springs
 from lattice.grid import Grid

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cosim.verify import CaseResult, run
+from cosim.verify.case import CaseResult
+from cosim.verify.cases import run
 from lattice.edge_crack import normalised_load
 from lattice.ice import Ice
 from lattice.limits import Strength, bending_top, tension

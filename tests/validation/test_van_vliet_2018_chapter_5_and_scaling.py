@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosim.verify import run
+from cosim.verify.cases import run
 from cosim.verify.froude import PARAMETERS, simulate
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cosim.run import run_scenario
-from cosim.scenario import load_scenario
+from cosim.scenario.loading import load_scenario
 from coupling.contact import CONTACTS, CrushingContact
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim.verify import mohr_plane, run, save_figures
+from cosim.verify import mohr_plane
+from cosim.verify.cases import run, save_figures
 from cosim.verify.mohr_figure import compressive_limit, envelope
 from cosim.verify.mohr_record import Record
 from lattice.ice import Ice

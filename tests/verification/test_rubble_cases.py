@@ -2,7 +2,7 @@
 
 import pytest
 
-from cosim import verify
+from cosim.verify import cases
 
 CASES = ("wedge", "float", "slope", "terminal-velocity", "momentum", "pile", "pusher", "cone")
 
@@ -13,7 +13,7 @@ def missed(result):
 
 @pytest.mark.parametrize("case", CASES)
 def test_the_layer_meets_its_references(case):
-    result = verify.run(case, quick=True)[0]
+    result = cases.run(case, quick=True)[0]
     assert not missed(result)
     assert sum(q.reference is not None for q in result.quantities) >= 2
 
@@ -21,28 +21,28 @@ def test_the_layer_meets_its_references(case):
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_the_layer_meets_its_references_in_full(case):
-    assert not missed(verify.run(case)[0])
+    assert not missed(cases.run(case)[0])
 
 
 @pytest.mark.parametrize(
     "settings", [{"slope": 60.0, "mu": 0.3, "L0": [15.0]}, {"slope": 50.0, "mu": 0.0, "L0": [8.0]}]
 )
 def test_wedge_for_other_slopes_and_frictions(settings):
-    result = verify.run("wedge", settings, quick=True)[0]
+    result = cases.run("wedge", settings, quick=True)[0]
     assert not missed(result)
     assert all(len(q.value) == 5 for q in result.quantities)
 
 
 def test_a_wrong_friction_is_found_by_the_wedge(monkeypatch):
     """The reference with the friction's sign reversed must not pass."""
-    wedge = verify.CASES["wedge"]
+    wedge = cases.CASES["wedge"]
     exact = wedge.formula
     monkeypatch.setattr(wedge, "formula", lambda p, *a: exact({**p, "mu": -p["mu"]}, *a))
-    assert missed(verify.run("wedge", {"L0": [10.0]}, quick=True)[0])
+    assert missed(cases.run("wedge", {"L0": [10.0]}, quick=True)[0])
 
 
 def test_a_real_wedge_has_no_reference_but_values():
-    result = verify.run("wedge", {"geometry": "block", "L0": [10.0]}, quick=True)[0]
+    result = cases.run("wedge", {"geometry": "block", "L0": [10.0]}, quick=True)[0]
     assert all(q.reference is None and min(q.value) > 0.0 for q in result.quantities)
     dry, flooded = result.quantities
     assert dry.value[-1] > 5.0 * flooded.value[-1]
@@ -50,7 +50,7 @@ def test_a_real_wedge_has_no_reference_but_values():
 
 @pytest.mark.parametrize(("turned", "mu"), [(30.0, 1.0), (-20.0, 0.1), (10.0, 0.0)])
 def test_oblique_impacts_that_stick_and_slide(turned, mu):
-    assert not missed(verify.run("momentum", {"turned": turned, "mu": mu, "offset": -0.2}, quick=True)[0])
+    assert not missed(cases.run("momentum", {"turned": turned, "mu": mu, "offset": -0.2}, quick=True)[0])
 
 
 @pytest.mark.parametrize(
@@ -67,5 +67,5 @@ def test_oblique_impacts_that_stick_and_slide(turned, mu):
 )
 def test_parameters_that_make_no_sense_get_one_line(case, settings, words):
     with pytest.raises(ValueError, match=words) as error:
-        verify.run(case, settings, quick=True)
+        cases.run(case, settings, quick=True)
     assert "\n" not in str(error.value)

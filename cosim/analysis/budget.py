@@ -1,0 +1,55 @@
+"""The force budget of a recorded run as a table: what carries the load, see `coupling.budget`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cosim.analysis.instants import encounters
+from cosim.analysis.peaks import at_peak
+from cosim.analysis.run_data import RunData
+from coupling.budget import AXES, TERMS
+from coupling.interface import Array
+
+if TYPE_CHECKING:
+    pass
+
+
+def rows(run: RunData) -> list[dict[str, Any]]:
+    """The terms [MN] of Fx and Fz at both peaks, in the last window before each circumferential failure (the first of
+    each encounter), and on the mean of the run; empty without a budget.
+    """
+    if not run.budget or not len(run.t_ns):
+        return []
+    at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
+    moments = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
+    moments += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
+    table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in moments for axis in ("fz", "fx")]
+    return table + [_row(run, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
+
+
+def _row(run: RunData, when: str, time: str, axis: str, windows: slice) -> dict[str, Any]:
+    length = (run.t_ns - run.begin_ns)[windows]
+
+    def mean(values: Array) -> float:
+        return float(np.average(values[windows], weights=length)) / 1e6
+
+    terms = {name.replace("_", " "): mean(run.budget[f"{axis}_{name}"]) for name in (*TERMS, "residual")}
+    return {
+        "when": when,
+        "time": time,
+        "component": axis.capitalize(),
+        "total": mean(run.component(axis)),
+        "terms": terms,
+    }
+
+
+def largest_residual(run: RunData) -> dict[str, float]:
+    """Largest residual of any window as a share of the run's largest load, by component."""
+    if not run.budget or not len(run.t_ns):
+        return {}
+    return {
+        axis: float(np.abs(run.budget[f"{axis}_residual"]).max() / max(np.abs(run.component(axis)).max(), 1e-9))
+        for axis in AXES
+    }

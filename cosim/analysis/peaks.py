@@ -1,0 +1,77 @@
+"""Largest loads of a recorded run, by component and phase, and the summary of a run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cosim.analysis.instants import largest
+from cosim.analysis.run_data import RunData
+from coupling.interface import NS, PHASES
+
+
+def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> int | None:
+    """Window of the load that is `largest`; None if there is no window."""
+    values = run.component(component, phase)
+    return largest(values) if len(values) else None
+
+
+def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float | None]]:
+    """Fx, Fz and resultant, largest in magnitude, with their simulated times, of all phases or of one."""
+    out: dict[str, dict[str, float | None]] = {}
+    for name in ("fx", "fz", "f"):
+        values, k = run.component(name, phase), at_peak(run, name, phase)
+        out[name] = {"value": None, "time": None} if k is None else {"value": float(values[k]), "time": float(run.t[k])}
+    return out
+
+
+def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
+    """For Fx, Fz and the resultant: peak (by magnitude) [N], its time [s], load [N] and share of each phase then.
+
+    The phases of the resultant are projected on its direction, so that they add up to it as the others do.
+    """
+    out: dict[str, dict[str, Any]] = {}
+    for name in ("fx", "fz", "f") if len(run.t_ns) else ():
+        total = run.component(name)
+        k = at_peak(run, name) or 0
+        peak = float(total[k])
+        parts = run.load[k] @ (run.load[k].sum(axis=0) / peak if peak else np.zeros(3))
+        loads = {p: float(parts[i] if name == "f" else run.component(name, p)[k]) for i, p in enumerate(PHASES)}
+        out[name] = {
+            "value": peak,
+            "time": float(run.t[k]),
+            "phases": loads,
+            "shares": {p: v / peak if peak else 0.0 for p, v in loads.items()},
+        }
+    return out
+
+
+def summary(run: RunData) -> dict[str, Any]:
+    """What a recording holds, as `cosim info --json` prints it."""
+    return {
+        "run": run.name,
+        "scenario": run.metadata["scenario"],
+        "title": run.metadata["title"],
+        "version": run.metadata["version"],
+        "seed": int(run.metadata["seed"]),
+        "overrides": run.overrides,
+        "simulated_s": float(run.t[-1]) if len(run.t) else 0.0,
+        "duration_s": int(run.metadata["duration_ns"]) / NS,
+        "windows": len(run.t),
+        "peaks": peaks(run),
+        "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
+        "events": [
+            {
+                "time": e.t_ns / NS,
+                "kind": e.kind,
+                "fx": e.force[0],
+                "fz": e.force[2],
+                "cells": e.cells,
+                "length": e.length,
+                "area": e.area,
+            }
+            for e in run.events
+        ],
+        "ledger": {name: float(values[-1]) for name, values in run.ledger.items()},
+    }

@@ -1,0 +1,59 @@
+"""A recorded run as arrays: what features, pictures and pages work on."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from cosim.analysis.sustained import running_mean
+from coupling.interface import NS, PHASES, Array, Event, IntArray
+
+#: components of a load in recordings, and with the resultant ``f``
+AXES = ("fx", "fy", "fz")
+COMPONENTS = (*AXES, "f")
+
+
+@dataclass(frozen=True)
+class RunData:
+    """Loads of every window, events and ledger of a run."""
+
+    name: str  #: of the file
+    metadata: Mapping[str, str]  #: of the run, see `cosim.recording.writer.run_metadata`
+    t_ns: IntArray  #: (n,) end of each window [ns]
+    load: Array  #: (n, 3, 3) force on the structure: windows, phases, components [N]
+    events: tuple[Event, ...] = ()
+    ledger: dict[str, Array] = field(default_factory=dict)  #: (n,) by name; nan where a window has no such term
+    texts: Mapping[str, str] = field(default_factory=dict)  #: attachments by name: scenario.toml, reference.toml
+    budget: dict[str, Array] = field(default_factory=dict)  #: (n,) by term, see `coupling.budget` [N]; empty if unknown
+
+    @property
+    def t(self) -> Array:
+        """(n,) end of each window [s]."""
+        return self.t_ns / NS
+
+    @property
+    def begin_ns(self) -> IntArray:
+        """(n,) start of each window [ns]; that of the first one from the length that the run began with."""
+        if not len(self.t_ns):
+            return self.t_ns
+        return np.concatenate((self.t_ns[:1] - int(self.metadata["window_ns"]), self.t_ns[:-1]))
+
+    def component(self, name: str, phase: str | None = None) -> Array:
+        """(n,) one component, ``fx``, ``fy``, ``fz`` or the resultant ``f``, of all phases or of one [N]."""
+        load = self.load.sum(axis=1) if phase is None else self.load[:, PHASES.index(phase)]
+        if name == "f":
+            return np.linalg.norm(load, axis=1)
+        out: Array = load[:, AXES.index(name)]
+        return out
+
+    def averaged(self, seconds: float) -> RunData:
+        """The run with loads that are means over the last ``seconds``; see `cosim.analysis.sustained`."""
+        return replace(self, load=running_mean(self.begin_ns, self.t_ns, self.load, seconds))
+
+    @property
+    def overrides(self) -> list[str]:
+        values: list[str] = json.loads(self.metadata.get("overrides", "[]"))
+        return values

@@ -1,0 +1,107 @@
+"""Commands on a recording: replay, compare, report, info, recover."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cosim.cli.options import JsonOption, RunArgument
+from cosim.cli.output import print_json, writable
+from cosim.errors import InputError
+
+
+def replay(
+    recording: RunArgument,
+    save: Annotated[Path | None, typer.Option(help="write a rerun file (.rrd) instead of opening a viewer")] = None,
+    web: Annotated[bool, typer.Option("--web", help="serve the viewer to a browser")] = False,
+    screenshot: Annotated[Path | None, typer.Option(help="write a picture (.png), no screen needed")] = None,
+    time: Annotated[float | None, typer.Option(help="simulated time of the picture in s; default the end")] = None,
+) -> None:
+    """Look at a recording in rerun: sheet, structure, blocks, loads by phase, events."""
+    if sum((save is not None, web, screenshot is not None)) > 1:
+        raise InputError("--save, --web and --screenshot exclude each other; give one of them")
+    if time is not None and screenshot is None:
+        raise InputError("--time belongs to --screenshot; add --screenshot x.png")
+    for path in (save, screenshot):
+        if path is not None:
+            writable(path)
+    from cosim.show import replay as show
+
+    if save is not None:
+        show.save(recording, save)
+    elif screenshot is not None:
+        show.screenshot(recording, screenshot, time)
+    elif web:
+        show.serve(recording)
+    else:
+        show.open_viewer(recording)
+
+
+def compare(
+    recording: RunArgument,
+    reference: Annotated[Path | None, typer.Argument(help="reference.toml or its folder; default: of the run")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Put the features of a recording beside what was measured and what others computed."""
+    from cosim.analysis import compare as comparison
+    from cosim.baselines.beside import beside
+    from cosim.recording.reader import read_run
+    from cosim.show.baseline_tables import print_beside
+    from cosim.show.tables import print_compare
+
+    data = read_run(recording)
+    name, loaded = comparison.reference_of(data, reference)
+    rows, design = comparison.compare(data, loaded), beside(data)
+    if as_json:
+        print_json({**comparison.to_json(data, name, rows), "design": design})
+    else:
+        print_compare(loaded.title, rows)
+        print_beside(design)
+
+
+def info(recording: RunArgument, as_json: JsonOption = False) -> None:
+    """What a recording holds: scenario, version, time, peaks, events."""
+    from cosim.analysis.peaks import summary
+    from cosim.recording.reader import read_run
+    from cosim.show.tables import print_info
+
+    content = summary(read_run(recording))
+    print_json(content) if as_json else print_info(content)
+
+
+def recover(
+    recording: RunArgument,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="the clean recording")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Write what can be read of a truncated recording as a clean file."""
+    from cosim.recording.recover import recover as rescue
+    from cosim.show.console import print_line
+
+    output = writable(output or recording.with_suffix(".recovered.mcap"))
+    data = rescue(recording, output)
+    content = {
+        "run": recording.name,
+        "recording": str(output),
+        "windows": len(data.t_ns),
+        "simulated_s": float(data.t[-1]),
+        "events": len(data.events),
+    }
+    print_json(content) if as_json else print_line(
+        f"{output}: {content['windows']} windows, {content['simulated_s']:g} s, {content['events']} events"
+    )
+
+
+def report(
+    recording: RunArgument,
+    output: Annotated[Path, typer.Option("-o", "--output", help="the page (.html)")],
+) -> None:
+    """One HTML page of a recording: loads by phase, balances, events, numbers beside the reference."""
+    from cosim.recording.reader import read_run
+    from cosim.show.console import print_line
+    from cosim.show.report import write_report
+
+    write_report(read_run(recording), writable(output))
+    print_line(f"{output}: written")

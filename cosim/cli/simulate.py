@@ -1,0 +1,90 @@
+"""Commands that simulate: run, sweep, verify."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from cosim.cli.options import JsonOption, ScenarioArgument, SetOption
+from cosim.cli.output import print_json, writable
+from cosim.errors import FailedError
+
+
+def run(
+    scenario: ScenarioArgument,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
+    overrides: SetOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Simulate a scenario."""
+    from cosim.observer import Observer
+    from cosim.recording.writer import Recorder
+    from cosim.scenario.loading import load_scenario
+    from cosim.show.console import warn
+    from cosim.show.progress import ProgressBar
+    from cosim.show.tables import print_run
+
+    loaded = load_scenario(scenario, overrides or ())
+    for text in loaded.warnings:
+        warn(text)
+    observers: list[Observer] = [ProgressBar()]
+    if output is not None:
+        observers.append(Recorder(writable(output)))
+    result = _simulate(loaded, observers)
+    result["recording"] = None if output is None else str(output)
+    print_json(result) if as_json else print_run(result)
+
+
+def _simulate(scenario: Any, observers: list[Any]) -> dict[str, Any]:
+    """Run and close the observers whatever happens."""
+    from cosim.run import run_scenario
+
+    try:
+        result: dict[str, Any] = run_scenario(scenario, observers).to_json()
+        return result
+    finally:
+        for observer in observers:
+            observer.on_close()
+
+
+def sweep_variants(
+    scenario: ScenarioArgument,
+    vary: Annotated[list[str], typer.Option("--vary", metavar="A.B=V,V", help="a key and its values, repeatable")],
+    overrides: SetOption = None,
+    grid: Annotated[bool, typer.Option("--grid/--one-at-a-time", help="all combinations, or each value alone")] = False,
+    workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None,
+    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Run variants of a scenario and put their loads side by side."""
+    from cosim.study import command as command
+
+    for path in (output, plot):
+        if path is not None:
+            writable(path)
+    content = command.run_sweep(scenario, vary, overrides or (), grid, workers)
+    if output is not None:
+        command.write_csv(content, output)
+    print_json(content) if as_json else command.show(content)
+    if plot is not None:
+        from cosim.show.tornado import tornado
+
+        tornado(content, plot)
+    if content["failed"]:
+        raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")
+
+
+def verify(
+    case: Annotated[str | None, typer.Argument(help="a case; all without it")] = None,
+    settings: Annotated[list[str] | None, typer.Option("--set", metavar="K=V", help="parameter of the case")] = None,
+    plots: Annotated[Path | None, typer.Option(help="folder for the figures, as PNG")] = None,
+    quick: Annotated[bool, typer.Option(help="coarser and shorter where a case is slow")] = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Check the parts against closed forms and the tables and figures of their sources."""
+    from cosim.verify.command import verify_command
+
+    verify_command(case, settings, plots, quick, as_json)

@@ -1,0 +1,60 @@
+"""Messages of a recording become the arrays of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from cosim.analysis.run_data import RunData
+from cosim.recording import messages
+from coupling.interface import Array, Event, IntArray
+
+DATA_TOPICS = ("/load/structure", "/events", "/ledger", "/load/budget")
+Stored = tuple[str, int, bytes]  #: topic, time [ns], serialised message
+
+
+def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], stored: Iterable[Stored]) -> RunData:
+    """From serialised messages; other topics are passed over."""
+    t_ns: list[int] = []
+    loads: list[list[float]] = []
+    events: list[Event] = []
+    books: dict[str, list[tuple[int, dict[str, float]]]] = {"/ledger": [], "/load/budget": []}
+    for topic, time, data in stored:
+        if topic == "/load/structure":
+            message = messages.Load.FromString(data)
+            t_ns.append(time)
+            loads.append([getattr(message, key) for key in messages.LOAD_FIELDS[3:]])
+        elif topic == "/events":
+            events.append(_event(time, messages.Event.FromString(data)))
+        elif topic in books:
+            message = messages.Ledger.FromString(data)
+            books[topic].append((time, dict(zip(message.name, message.value, strict=True))))
+    times = np.array(t_ns, np.int64)
+    return RunData(
+        name,
+        metadata,
+        times,
+        np.array(loads, float).reshape(-1, 3, 3),
+        tuple(events),
+        _columns(times, books["/ledger"]),
+        texts,
+        _columns(times, books["/load/budget"]),
+    )
+
+
+def _event(t_ns: int, m: Any) -> Event:
+    return Event(t_ns, m.kind, (m.fx, m.fy, m.fz), m.cells, (m.x, m.y, m.z), m.text, m.length, m.area)
+
+
+def _columns(times: IntArray, rows: list[tuple[int, dict[str, float]]]) -> dict[str, Array]:
+    """The ledger as one column per term, aligned with the windows."""
+    names = list(dict.fromkeys(name for _, row in rows for name in row))
+    columns = {name: np.full(len(times), np.nan) for name in names}
+    index = {t: k for k, t in enumerate(times.tolist())}
+    for t, row in rows:
+        for name, value in row.items():
+            if t in index:
+                columns[name][index[t]] = value
+    return columns

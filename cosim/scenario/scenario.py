@@ -1,0 +1,53 @@
+"""A checked scenario, ready to run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cosim.scenario.model import ScenarioModel
+from cosim.scenario.text import complete, to_toml
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A checked scenario. Sections are attributes: ``scenario.ice.thickness`` [SI]."""
+
+    name: str  #: of the folder or file, without path
+    text: str  #: of the file, and of its base, as written, with their sources as comments
+    raw: dict[str, Any]  #: parsed text with the overrides applied
+    model: ScenarioModel
+    overrides: tuple[str, ...] = ()
+    folder: Path | None = None  #: where reference.toml may lie; never recorded
+    warnings: tuple[str, ...] = ()
+
+    def __getattr__(self, section: str) -> Any:
+        if section in ScenarioModel.model_fields:
+            return getattr(self.model, section)
+        raise AttributeError(section)
+
+    @property
+    def title(self) -> str:
+        return self.model.scenario.title
+
+    @property
+    def seed(self) -> int:
+        return self.model.scenario.seed
+
+    @property
+    def duration_ns(self) -> int:
+        return round(self.model.scenario.duration * 1e9)
+
+    @property
+    def window_ns(self) -> int:
+        return round(self.model.coupling.window * 1e9)
+
+    @property
+    def substeps(self) -> int:
+        """Sub-steps of the rubble in one time window."""
+        return self.window_ns // round(self.model.rubble.substep * 1e9)
+
+    def resolved_toml(self) -> str:
+        """The scenario as it ran: overrides applied, every default written out. Loads to the same model."""
+        return to_toml(complete(self.raw, self.model))

@@ -1,0 +1,25 @@
+"""What the sections of a scenario file have in common: strict frozen models, SI floats inside.
+
+Angles are stored in radians. A field without default must stand in the file. Keys that are not listed are refused.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+Coefficient = Annotated[float, Field(ge=0)]
+
+
+def fault(key: str, text: str) -> PydanticCustomError:
+    """An error that a check over several keys raises; ``key`` is the one to change, relative to the section."""
+    return PydanticCustomError("check", "{text}", {"text": text, "key": key})
+
+
+class Section(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)

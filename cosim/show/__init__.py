@@ -1,0 +1,1 @@
+"""What people see: terminal, report, replay, pictures. Presents content that other rooms make."""

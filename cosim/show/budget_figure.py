@@ -1,0 +1,61 @@
+"""The force budget of a recorded run as a picture, see `coupling.budget`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cosim.analysis.run_data import RunData
+from coupling.budget import TERMS
+from coupling.interface import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+COLOURS = {
+    "dry_tops": "#e6812b",
+    "flooded_rubble": "#3a9b5c",
+    "pressed_sheet": "#2f7ebc",
+    "drag": "#8d6cab",
+    "inertia": "#b8bfc6",
+    "held": "#5aa9c4",
+    "staggering": "#e3c04b",
+}
+
+
+def draw(figure: Figure, run: RunData) -> None:
+    """Terms over time, stacked from zero up where they lift the structure and down where not; the total on top."""
+    axes = figure.subplots(2, 1, sharex=True)
+    for ax, axis in zip(axes, ("fz", "fx"), strict=True):
+        terms = np.array([run.budget[f"{axis}_{name}"] for name in TERMS]) / 1e6
+        for side, label in ((np.maximum(terms, 0.0), True), (np.minimum(terms, 0.0), False)):
+            names = [name.replace("_", " ") for name in TERMS] if label else ()
+            ax.stackplot(run.t, side, colors=[COLOURS[name] for name in TERMS], labels=names, alpha=0.8, lw=0)
+        total = run.component(axis) / 1e6
+        ax.plot(run.t, total, "k", lw=0.7, label="total")
+        ax.set_ylabel(f"{axis.capitalize()} [MN]")
+        _focus(ax, terms, total)
+    figure.legend(*axes[0].get_legend_handles_labels(), ncols=8, fontsize=7, loc="outside upper center")
+    axes[1].set_xlabel("time [s]")
+    axes[1].set_xlim(0.0, run.t[-1])
+
+
+def _focus(ax: Axes, terms: Array, total: Array) -> None:
+    """Limits in which the load is seen; how much of the stacks sticks out is said in the picture."""
+    up, down = np.maximum(terms, 0.0).sum(axis=0), np.minimum(terms, 0.0).sum(axis=0)
+    high, low = 1.15 * max(total.max(), 1e-3), min(1.15 * total.min(), -0.5 * total.max())
+    out = np.mean((up > high) | (down < low))
+    ax.set_ylim(low, high)
+    if out > 0.0:
+        ax.text(
+            0.995,
+            0.03,
+            f"stacks of {out:.1%} of the windows end outside",
+            transform=ax.transAxes,
+            ha="right",
+            fontsize=7,
+        )
+    ax.grid(alpha=0.3)

@@ -1,0 +1,33 @@
+"""The terminal: standard output and error, plain tables, lines and warnings."""
+
+from __future__ import annotations
+
+import sys
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+WIDTH = None if sys.stdout.isatty() else 120  #: a pipe has no width of its own
+
+
+stderr = Console(stderr=True)
+
+
+stdout = Console(width=WIDTH)
+
+
+def print_line(text: str) -> None:
+    stdout.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
+def warn(text: str) -> None:
+    stderr.print(f"warning: {text}", style="yellow", highlight=False, markup=False, soft_wrap=True)
+
+
+def new_table(*columns: str, title: str) -> Table:
+    table = Table(title=title, box=box.SIMPLE, title_justify="left")
+    for k, name in enumerate(columns):
+        table.add_column(Text(name), justify="left" if k == 0 or name in ("event", "unit") else "right")
+    return table

@@ -1,0 +1,124 @@
+"""Figures of a recorded run: loads by phase, masses, where the energy went.
+
+They are drawn on a figure of matplotlib (extra ``report``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cosim.analysis.run_data import RunData
+from coupling.energy import LIMIT
+from coupling.interface import PHASES, Array
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+from cosim.show import budget_figure
+
+COLOURS = {"breaking": "#2f7ebc", "rotating": "#e6812b", "sliding": "#3a9b5c"}
+
+
+#: where energy is or went: terms of `coupling.energy` that belong together, and their colour
+ENERGY = {
+    "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),
+    "friction on structure": (
+        "#7fb3dc",
+        ("contact_friction_loss", "friction_structure_loss", "side_friction_structure_loss"),
+    ),
+    "sheet: damping, scheme": ("#9a9fa6", ("damping_loss", "scheme_loss")),
+    "fracture, hand-over": (
+        "#1d2733",
+        ("fracture_loss", "handover_elastic_loss", "handover_potential_loss", "handover_kinetic_loss"),
+    ),
+    "stored in the sheet": ("#8d6cab", ("sheet_elastic", "sheet_foundation", "sheet_kinetic")),
+    "stored in the rubble": ("#e6812b", ("rubble_potential", "rubble_kinetic")),
+    "rubble: friction, impact": (
+        "#f2b880",
+        (
+            "impact_ice_loss",
+            "impact_structure_loss",
+            "impact_sheet_loss",
+            "friction_ice_loss",
+            "friction_sheet_loss",
+            "side_friction_ice_loss",
+            "side_impact_loss",
+        ),
+    ),
+    "water": ("#3a9b5c", ("drag_loss", "side_drag_loss", "dry_top_loss")),
+    "ice that left": ("#c9c24f", ("crushed_energy_loss", "cleared_energy_loss")),
+    "interface, step, overlap": ("#d45087", ("interface_loss", "stepping_loss", "correction_loss")),
+    "side push of the sections": ("#b03a2e", ("side_push_loss",)),
+}
+
+
+ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
+
+
+def has_data(title: str, run: RunData) -> bool:
+    """Whether a figure has something to show: a recording may hold no energy books and no force budget."""
+    needs = {"drift": "drift_work" in run.ledger, "carries": bool(run.budget)}
+    return all(there for word, there in needs.items() if word in title)
+
+
+def draw_loads(figure: Figure, run: RunData) -> None:
+    """Fx and Fz by phase, stacked, with the total as a line."""
+    axes = figure.subplots(2, 1, sharex=True)
+    for ax, name, label in zip(axes, ("fx", "fz"), ("Fx [MN]", "Fz [MN]"), strict=True):
+        phases = np.array([run.component(name, p) for p in PHASES]) / 1e6
+        for side, labels in ((np.maximum, list(PHASES)), (np.minimum, ())):  # what presses down is stacked downwards
+            ax.stackplot(run.t, side(phases, 0.0), colors=COLOURS.values(), labels=labels, alpha=0.75, lw=0)
+        ax.plot(run.t, phases.sum(axis=0), "k", lw=0.7, label="total")
+        ax.set_ylabel(label)
+        ax.grid(alpha=0.3)
+    figure.legend(*axes[0].get_legend_handles_labels(), ncols=4, fontsize=8, loc="outside upper center")
+    axes[1].set_xlabel("time [s]")
+    axes[1].set_xlim(0.0, run.t[-1])
+
+
+def draw_mass(figure: Figure, run: RunData) -> None:
+    """Where the ice is that has left the sheet."""
+    ax = figure.subplots()
+    for name in ICE[1:]:
+        ax.plot(run.t, run.ledger[name] / 1e6, label=name.removesuffix("_mass"))
+    ax.set(xlabel="time [s]", ylabel="mass [1000 t]", xlim=(0.0, run.t[-1]))
+    ax.legend()
+    ax.grid(alpha=0.3)
+
+
+def draw_energy(figure: Figure, run: RunData) -> None:
+    """Where the drift's work is or went, what else put energy in (below zero), and what is not explained."""
+    ax, low = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
+    work = run.ledger["drift_work"] / 1e6
+    groups = {name: energy_group(run, names) / 1e6 for name, (_, names) in ENERGY.items()}
+    colours = [colour for colour, _ in ENERGY.values()]
+    ax.stackplot(run.t, np.maximum(list(groups.values()), 0.0), labels=list(groups), colors=colours, lw=0)
+    ax.stackplot(run.t, np.minimum(list(groups.values()), 0.0), colors=colours, lw=0)
+    ax.plot(run.t, work, "w", lw=3.0)
+    ax.plot(run.t, work, "k", lw=1.4, label="work of the drift")
+    ax.axhline(0.0, color="k", lw=0.6)
+    ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
+    ax.set(ylabel="energy [MJ]", xlim=(0.0, run.t[-1]))
+    figure.legend(*ax.get_legend_handles_labels(), fontsize=8, loc="outside right upper")
+    largest = np.maximum.accumulate(np.maximum(np.abs(work), 1e-6))
+    low.semilogy(run.t, np.maximum(np.abs(run.ledger["energy_residual"]) / 1e6 / largest, 1e-12), "k", lw=0.9)
+    low.axhline(LIMIT, color="#b03a2e", lw=0.9, ls="--")
+    low.text(0.01 * run.t[-1], LIMIT, "a run stops here", color="#b03a2e", fontsize=8, va="bottom")
+    low.set(xlabel="time [s]", ylabel="residual / work", ylim=(1e-12, 1.0))
+    for axes in (ax, low):
+        axes.grid(alpha=0.3)
+
+
+def energy_group(run: RunData, names: Sequence[str]) -> Array:
+    """Sum of those terms that the run has, (windows,) [J]."""
+    return np.sum([run.ledger[n] for n in names if n in run.ledger] or [np.zeros(len(run.t))], axis=0)
+
+
+FIGURES: dict[str, Callable[[Any, RunData], None]] = {
+    "Load on the structure by phase": draw_loads,
+    "What carries the load": budget_figure.draw,
+    "Ice that has left the sheet": draw_mass,
+    "Where the work of the drift went": draw_energy,
+}

@@ -1,0 +1,128 @@
+"""`cosim replay`: a recording in rerun. Sheet, structure and blocks as solids, loads by phase, the log of events.
+
+Nothing is converted on disk: the recording is read and sent to a viewer, saved as .rrd, or photographed headless.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rerun as rr
+
+from cosim.analysis.run_data import RunData
+from cosim.errors import InputError
+from cosim.recording import shapes
+from cosim.recording.reader import messages, read_run
+from cosim.show import pictures
+from cosim.show.layout import TIMELINE, blueprint
+from cosim.show.viewer import headless_viewer, wait_until_loaded
+from coupling.interface import NS, PHASES, Phase
+
+APPLICATION = "cosim"
+
+
+TOTAL_RGB = (235, 235, 235)
+
+
+def save(recording: Path, out: Path) -> None:
+    """Write a rerun file with pictures, curves and layout."""
+    with _stream() as stream:
+        run = read_run(recording)
+        stream.save(out, default_blueprint=blueprint(run))
+        send(stream, recording, run)
+
+
+def open_viewer(recording: Path) -> None:
+    """Open the viewer on this machine's screen."""
+    with _stream() as stream:
+        run = read_run(recording)
+        stream.spawn(default_blueprint=blueprint(run))
+        send(stream, recording, run)
+
+
+def serve(recording: Path) -> None:
+    """Serve viewer and data to a browser on this machine, until interrupted."""
+    with _stream() as stream:
+        run = read_run(recording)
+        url = stream.serve_grpc(default_blueprint=blueprint(run))
+        send(stream, recording, run)
+        rr.serve_web_viewer(connect_to=url, open_browser=True)
+        while True:
+            time.sleep(1)
+
+
+def screenshot(
+    recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050), settle: float = 6.0
+) -> list[str]:
+    """Write a picture at a simulated time [s], default the end; returns what the views complain about.
+
+    ``settle`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
+    """
+    run = read_run(recording)
+    at = float(run.t[-1]) if at is None else at
+    if not 0 <= at <= run.t[-1]:
+        raise InputError(f"--time {at:g}: outside of the run; give 0 to {run.t[-1]:g} s")
+    with headless_viewer(size) as (url, client):
+        with _stream() as stream:
+            stream.connect_grpc(url, default_blueprint=blueprint(run))
+            send(stream, recording, run)
+        wait_until_loaded(client, run)
+        client.set_time(TIMELINE, duration=at, play_state="paused")
+        time.sleep(settle)
+        out.write_bytes(client.take_screenshot())
+        return [str(report) for view in client.get_state().views for report in view.reports]
+
+
+def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
+    """All of a run: pictures of the recorded frames, loads of every window, events."""
+    _send_loads(stream, run)
+    for event in run.events:
+        stream.set_time(TIMELINE, duration=event.t_ns / NS)
+        stream.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
+    for mesh in pictures.meshes(messages(recording, pictures.TOPICS), float(run.metadata["thickness_m"])):
+        stream.set_time(TIMELINE, duration=mesh.t_ns / NS)
+        stream.log(f"world/{mesh.name}", _mesh(mesh), static=mesh.name == "structure")
+    stream.flush()
+
+
+def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
+    # curves are drawn in the order of their paths: the total first, so that it hides no phase
+    series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
+    index = rr.TimeColumn(TIMELINE, duration=run.t)
+    for axis in ("fx", "fz"):
+        for key, name, phase, rgb in series:
+            path = f"load/{axis}/{key}"
+            width = 3.5 if phase is None else 1.6
+            stream.log(path, rr.SeriesLines(names=name, colors=rgb, widths=width), static=True)
+            values = rr.Scalars.columns(scalars=run.component(axis, phase) * 1e-6)
+            stream.send_columns(path, indexes=[index], columns=values)
+
+
+def _mesh(mesh: pictures.Mesh) -> Any:
+    if not len(mesh.faces):
+        return rr.Clear(recursive=False)
+    rgb = np.broadcast_to(mesh.rgb, mesh.vertices.shape).astype(np.uint8)
+    return rr.Mesh3D(
+        vertex_positions=mesh.vertices.astype(np.float32),
+        triangle_indices=mesh.faces,
+        vertex_normals=mesh.normals.astype(np.float32),
+        vertex_colors=rgb,
+    )
+
+
+def _level(kind: str) -> str:
+    return "WARN" if kind in ("split", "circumferential") else "INFO"
+
+
+@contextmanager
+def _stream() -> Iterator[rr.RecordingStream]:
+    stream = rr.RecordingStream(APPLICATION)
+    try:
+        yield stream
+    finally:
+        stream.disconnect()

@@ -1,0 +1,88 @@
+"""One HTML page of a recorded run: loads by phase, balances, events, and the numbers beside the reference.
+
+Needs the extra ``report`` (matplotlib, jinja2).
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cosim.analysis import budget
+from cosim.analysis.compare import compare, reference_of
+from cosim.analysis.peaks import shares_at_peak, summary
+from cosim.analysis.run_data import RunData
+from cosim.baselines.beside import beside
+from cosim.errors import FailedError
+from cosim.show.baseline_cells import BESIDE, beside_rows, remarks
+from cosim.show.cells import compare_cells
+from coupling.interface import NS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+from cosim.show.figures import FIGURES, has_data
+
+
+def write_report(run: RunData, out: Path) -> None:
+    """Writes the page; pictures are inside it."""
+    try:
+        import jinja2
+        import matplotlib
+    except ImportError as error:
+        text = f"{error.name} is missing: install the extra, for example `uv sync --extra report`"
+        raise FailedError(text) from error
+    matplotlib.use("Agg")
+    template = files("cosim.show").joinpath("report.html.j2").read_text("utf-8")
+    page = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined).from_string(template)
+    out.write_text(page.render(content(run)), "utf-8")
+
+
+def content(run: RunData) -> dict[str, Any]:
+    """What the page shows, ready for its template."""
+    design = beside(run)
+    figures = [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)]
+    return {
+        "summary": summary(run),
+        "rows": _rows(run),
+        "figures": figures,
+        "shares": shares_at_peak(run),
+        "budget": budget.rows(run),
+        "bound": budget.largest_residual(run),
+        "design": {"head": BESIDE, "rows": beside_rows(design), "remarks": remarks(design)},
+        "events": [
+            {
+                "time": e.t_ns / NS,
+                "kind": e.kind,
+                "fx": e.force[0] / 1e6,
+                "fz": e.force[2] / 1e6,
+                "cells": e.cells,
+                "text": e.text,
+            }
+            for e in run.events
+        ],
+        "metadata": dict(run.metadata),
+        "scenario": run.texts.get("scenario.toml", ""),
+    }
+
+
+def _rows(run: RunData) -> list[tuple[str, ...]]:
+    """Features beside their reference, as text; the last column is the source."""
+    if "reference.toml" not in run.texts:
+        return []
+    _, reference = reference_of(run, None)
+    return [(*compare_cells(row), row.feature.source) for row in compare(run, reference)]
+
+
+def picture(title: str, draw: Callable[[Figure, RunData], None], run: RunData) -> dict[str, str]:
+    """A figure as PNG for an HTML page."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
+    draw(figure, run)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=130)
+    return {"title": title, "png": base64.b64encode(buffer.getvalue()).decode()}

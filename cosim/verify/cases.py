@@ -1,0 +1,95 @@
+"""`cosim verify`: the lattice against the tables and figures of van Vliet (2018), chapters 2 to 5 and appendices.
+
+A case is a module with ``PARAMETERS`` and ``run(parameters, quick) -> CaseResult``; it is registered by its line below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from cosim.verify import (
+    cantilever,
+    cone,
+    dispersion,
+    eigenfrequencies,
+    envelope,
+    floating,
+    frequency_response,
+    froude,
+    l_beam,
+    mohr_plane,
+    momentum,
+    pile,
+    poisson,
+    pusher,
+    slope,
+    splitting,
+    static_deflection,
+    terminal_velocity,
+    wedge,
+)
+from cosim.verify.case import CaseResult, Figure, Quantity
+from cosim.verify.settings import merged, parse
+
+__all__ = ["CASES", "CaseResult", "Figure", "Quantity", "run", "save_figures"]
+
+CASES: dict[str, ModuleType] = {
+    "eigenfrequencies": eigenfrequencies,
+    "static-deflection": static_deflection,
+    "dispersion": dispersion,
+    "frequency-response": frequency_response,
+    "poisson": poisson,
+    "envelope": envelope,
+    "splitting": splitting,
+    "cantilever": cantilever,
+    "l-beam": l_beam,
+    "froude": froude,
+    "wedge": wedge,
+    "float": floating,
+    "slope": slope,
+    "terminal-velocity": terminal_velocity,
+    "cone": cone,
+    "momentum": momentum,
+    "pile": pile,
+    "pusher": pusher,
+    "mohr-plane": mohr_plane,
+}
+
+
+def run(
+    case: str | None = None,
+    settings: Mapping[str, Any] | Iterable[str] | None = None,
+    plots_dir: str | Path | None = None,
+    quick: bool = False,
+) -> list[CaseResult]:
+    """Run one case, or all; ``settings`` need a case. ValueError with one line for anything that cannot be run."""
+    changes = parse(settings)
+    if case is None and changes:
+        raise ValueError("--set needs a case: parameters belong to one case")
+    if case is not None and case not in CASES:
+        raise ValueError(f"unknown case {case!r}: known cases are {', '.join(CASES)}")
+    results = []
+    for name in CASES if case is None else [case]:
+        module = CASES[name]
+        results.append(module.run(merged(name, module.PARAMETERS, changes), quick))
+        if plots_dir is not None:
+            save_figures(results[-1], Path(plots_dir))
+    return results
+
+
+def save_figures(result: CaseResult, folder: Path) -> list[Path]:
+    """Draw the figures of a result as ``<case>_<figure>.png``."""
+    from matplotlib.figure import Figure as Sheet  # slow to import, not installed everywhere
+
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for figure in result.figures:
+        sheet = Sheet(figsize=(9.0, 6.0), layout="constrained")
+        figure.draw(sheet)
+        sheet.suptitle(figure.title)
+        paths.append(folder / f"{result.case}_{figure.name}.png")
+        sheet.savefig(paths[-1], dpi=110)
+    return paths
