@@ -169,8 +169,8 @@ class EnergyBooks:
         norms = []
         for b, stage in zip((1.0 - GAMMA, GAMMA), step.stages, strict=True):
             s = stage.state
-            v = point_displacement(s.u_dot, s.q_dot, nodes, step.height)
-            y = point_displacement(s.u, s.q, nodes, step.height)
+            v = point_displacement(s.u_dot, s.q_dot, nodes, step.lever)
+            y = point_displacement(s.u, s.q, nodes, step.lever)
             self.touch.add(dt * b, stage.contact, v)
             self.rub.add(dt * b, self.friction_of(y, stage.contact), v)
             for load in loads:

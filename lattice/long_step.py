@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from lattice.contact import EdgeContact, edge_displacement
+from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.energy import EnergyBooks
 from lattice.grid import Array, BoolArray
 from lattice.implicit.engine import Engine
@@ -30,7 +30,7 @@ QUIET = 8
 
 @dataclass
 class LongStep:
-    """A step over several windows, served window by window; its contact acts at one height throughout."""
+    """A step over several windows, served window by window; its contact keeps its levers throughout."""
 
     step: Step
     dt: float  #: of a window [s]
@@ -49,7 +49,7 @@ class LongStep:
         ``force`` (m, 3) is that of the contact at the end, ``old`` the state at the start of the window.
         """
         mean = 0.5 * (self.contact + force)
-        path = end - edge_displacement(old, contact.nodes, self.step.height)
+        path = end - edge_displacement(old, contact.nodes, self.step.lever)
         self.done.touch.add(self.dt, mean, path / self.dt)
         self.done.rub.add(self.dt, energy.friction_of(end, mean), path / self.dt)
         self.contact, self.served = force, self.served + 1
@@ -92,7 +92,7 @@ class LongSteps:
         if step.error > LONG_STEP_ERROR * engine.ice.h:
             self._wait, self._windows = self._windows, max(self._windows // 2, 2)
             return None
-        start = contact.evaluate(t, edge_displacement(state, contact.nodes, contact.height))[0]
+        start = contact.evaluate(t, edge_displacement(state, contact.nodes, lever_of(contact)))[0]
         self.under_way = LongStep(step, dt, self._windows, contact=start)
         self._windows = min(2 * self._windows, self._longest)
         return self.under_way

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lattice.contact import EdgeContact, edge_displacement
+from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.table import THESIS, Criterion
 from lattice.floe import LOOSE, Floe, Release
 from lattice.grid import Array, BoolArray, Grid, IntArray
@@ -111,6 +111,7 @@ class Sheet(Floe):
         applied = self.support.applied(loads)
         out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), live, present, applied)
         out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
+        out.contact_nodes = contact.nodes
         self.state = step.state
 
     def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
@@ -120,7 +121,7 @@ class Sheet(Floe):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if self._utilisation(step.at(middle)).max() >= 1.0 else (middle, high)
         time = t + high * self.dt
-        return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes, step.height))[0]
+        return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes, step.lever))[0]
 
     # ---- long steps -------------------------------------------------------------------------------------------
 
@@ -135,9 +136,10 @@ class Sheet(Floe):
             self._drop_long_step()
             return None
         live, present, old = self.live_cells, self.present, self.state
-        end = edge_displacement(state, contact.nodes, plan.step.height)
+        end = edge_displacement(state, contact.nodes, plan.step.lever)
         force = contact.evaluate(t + self.dt, end)[0]
-        out = Outcome(plan.serve(self.energy, old, end, force, contact), force, parts=self.parts)
+        mean = plan.serve(self.energy, old, end, force, contact)
+        out = Outcome(mean, contact.nodes, force, parts=self.parts)
         cubic = of_cubic(old, state, self.dt)
         out.reaction = between(self.support, old, state, self.dt, cubic, live, present, Applied({}))
         self.state, self.utilisation = state, utilisation
@@ -164,7 +166,7 @@ class Sheet(Floe):
         turned = self._rotation() > 0.5 * TURNED
         corners = turned[self.grid.cell_nodes]
         cells = np.flatnonzero(self.live_cells & corners.any(axis=1) & ~corners.all(axis=1)).tolist()
-        force = contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
+        force = contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
         self.fail(cells, [TURNED_TOO_FAR] * len(cells), self.state, out)
         self._release_loose(out, release, turned)
         if cells or out.pieces:

@@ -14,9 +14,9 @@ import numpy as np
 
 from cosim.verify.case import Figure
 from lattice.continuum import hydrodynamic_damping
+from lattice.criteria.laws import crack_tip_bending
 from lattice.grid import Array, IntArray
 from lattice.ice import BeamTest, Ice
-from lattice.criteria.laws import crack_tip_bending
 from lattice.motion import MovingPiece
 from lattice.specimens import cantilever, factor_f
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
 from cosim.verify.plate import springs_of
+from lattice.criteria.laws import bending_bottom, bending_top, compression, spalling, tension
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.criteria.laws import bending_bottom, bending_top, compression, spalling, tension
 from lattice.strain import CellState
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 

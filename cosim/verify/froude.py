@@ -12,9 +12,9 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near, value
 from lattice.continuum import hydrodynamic_damping
+from lattice.criteria.laws import bending_top
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.criteria.laws import bending_top
 from lattice.motion import MovingPiece
 from lattice.specimens import cantilever
 

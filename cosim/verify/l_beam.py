@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, limited, near, value
+from lattice.criteria.laws import bending_bottom, bending_top, out_of_plane_shear
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.criteria.laws import bending_bottom, bending_top, out_of_plane_shear
 from lattice.specimens import Piece, l_beam
 from lattice.strain import CellState
 

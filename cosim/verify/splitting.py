@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, limited, near, value
+from lattice.criteria.laws import crack_tip_splitting
 from lattice.edge_crack import normalised_load
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.criteria.laws import crack_tip_splitting
 from lattice.specimens import EdgeCrack
 
 PARAMETERS: dict[str, Any] = {

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.polynomial.legendre import Legendre
 
 from lattice.compiled import compiled
-from lattice.cracks.law import CrackLaw, layer
+from lattice.cracks.law import layer
 from lattice.grid import Array, IntArray
 
 

@@ -12,22 +12,21 @@ from typing import Any
 
 import numpy as np
 
-from lattice.contact import EdgeContact, edge_displacement
+from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import CrackLaw
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import CRITERIA, Criterion
-from lattice.explicit_sheet import ExplicitSheet
 from lattice.explicit.engine import Marched
-from lattice.explicit.forces import PointForces, point_forces
+from lattice.explicit.forces import PointForces
 from lattice.explicit.window import Window
+from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Release
-from lattice.grid import Array, BoolArray, IntArray
+from lattice.grid import BoolArray
 from lattice.loads import Loads
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import TURNED
-from lattice.state import State
 from lattice.strain import CellState
 
 PRINCIPAL = (CRITERIA["principal-stress"],)
@@ -57,11 +56,11 @@ class CrackingSheet(ExplicitSheet):
             self._known = key, Standing(live, nowhere, limit)
         return self._known[1]
 
-    def _break(self, t: float, done: int, loads: Loads, contact: EdgeContact, out: Outcome, release: Release) -> None:
+    def _break(self, w: Window, done: int, out: Outcome, release: Release) -> None:  # noqa: ARG002  nothing leaves
         """Cells that reached their limit in the last sub-step begin to crack, all of them."""
-        e, now, ended = self.engine, t + done * self.engine.dt, self._at(0.0)
+        e, now, ended, half = self.engine, w.t + done * self.engine.dt, self._at(0.0), self._at(0.5)
         utilisation, before = self._utilisation(ended), self._utilisation(self._at(1.0))
-        cells, half = np.flatnonzero(utilisation >= 1.0), self._at(0.5)
+        cells = np.flatnonzero(utilisation >= 1.0)
         if not len(cells):
             return
         rise = np.maximum(utilisation[cells] - before[cells], 1e-300)
@@ -69,7 +68,7 @@ class CrackingSheet(ExplicitSheet):
         order = np.lexsort((cells, part))
         cells, part = cells[order], part[order]
         if out.failure is None:
-            out.failure = (now - (1.0 - part[0]) * e.dt, e.touch(now, contact).force)
+            out.failure = (now - (1.0 - part[0]) * e.dt, e.touch(now, w.contact).force)
         self.failed_cells += cells.tolist()
         self.failure_times += (now - (1.0 - part) * e.dt).tolist()
         out.causes += self.judge.causes(ended.u, ended.q, self.standing, cells)
@@ -115,7 +114,7 @@ class CrackingSheet(ExplicitSheet):
             return
         self._release_loose(out, release, turned)
         if out.pieces:
-            out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, contact.height))[0]
+            out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
             gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
             self.engine.layered.drop(gone)  # with the energy that `book_departure` has booked
 
@@ -139,12 +138,12 @@ class CrackingSheet(ExplicitSheet):
         r.held = (r.held[0] + self._pull / self.dt, r.held[1])
         return out
 
-    def _march(self, t: float, done: int, loads: Loads, contact: EdgeContact, window: Window) -> Marched:
+    def _march(self, w: Window, done: int) -> Marched:
         before = self.engine.pull(self.support.held)
-        out = super()._march(t, done, loads, contact, window)
+        out = super()._march(w, done)
         time = out.steps * self.engine.dt
         self._pull += 0.5 * time * (before + self.engine.pull(self.support.held))
         return out
 
-    def _holding(self) -> float:
-        return super()._holding() + self.engine.pull(self.support.held)
+    def _holding(self, load: PointForces) -> float:
+        return super()._holding(load) + self.engine.pull(self.support.held)

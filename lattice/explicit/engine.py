@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from lattice.assembly import assemble
-from lattice.contact import EdgeContact, point_displacement
+from lattice.contact import EdgeContact, lever_of, point_displacement
 from lattice.explicit import layout
 from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
 from lattice.explicit.kernels import push, sweep
@@ -179,7 +179,7 @@ class ExplicitEngine(Engine):
     def touching(self, contact: EdgeContact) -> Array:
         """Displacements of the points of action now, (m, 3) [m]."""
         u, q = np.split(self.at(contact.nodes), [2], axis=1)
-        return point_displacement(u, q, np.arange(len(u)), contact.height)
+        return point_displacement(u, q, np.arange(len(u)), lever_of(contact))
 
     def at(self, nodes: IntArray) -> Array:
         """Displacements of some nodes now, (k, 5)."""

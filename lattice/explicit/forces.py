@@ -26,6 +26,7 @@ class Touch(NamedTuple):
     row: IntArray  #: (m,)
     column: IntArray  #: (m,)
     height: Array  #: (m,) of the points above the middle of the sheet [m]
+    lead: Array  #: (m,) of the points ahead of their nodes [m]
     at: Array  #: (m, 3) displacement of the points at which ``force`` holds [m]
     force: Array  #: (m, 3) [N]
     tangent: Array  #: (m, 3, 3) [N/m]
@@ -33,6 +34,8 @@ class Touch(NamedTuple):
     def at_once(self) -> PointForces:
         """The force for the displacement ``at``, with its moments about the middle."""
         force = np.hstack((self.force, self.height[:, None] * self.force[:, :2]))
+        if self.lead.any():
+            force[:, 3] -= self.lead * self.force[:, 2]
         return PointForces(self.row, self.column, force, np.array([0, len(force)]))
 
 
@@ -76,6 +79,7 @@ def touch_at(t: float, contact: EdgeContact, at: Array, columns: int) -> Touch:
     return Touch(
         *np.divmod(contact.nodes, columns),
         np.ascontiguousarray(contact.height),
+        np.ascontiguousarray(contact.lead),
         np.ascontiguousarray(at),
         np.ascontiguousarray(force),
         np.ascontiguousarray(tangent),

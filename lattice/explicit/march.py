@@ -9,26 +9,30 @@ from __future__ import annotations
 from lattice.compiled import compiled
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
-from lattice.explicit.layout import Mesh, Motion, Pace, PerNode, W
+from lattice.explicit.layout import PHI_X, Mesh, Motion, Pace, PerNode, W
 from lattice.explicit.screen import Screen, overloaded
 from lattice.grid import Array, IntArray
 
 
 @compiled(nogil=True)
 def contact_force(touch: Touch, now: Array, motion: Motion, alpha: float) -> None:
-    """Contact at its height above its nodes, linear about the displacement ``at``: into ``now`` (m, 5) [N], [N m]."""
+    """Contact at the end of its levers, linear about the displacement ``at``: into ``now`` (m, 5) [N], [N m]."""
     y, v, height = motion.y, motion.v, touch.height
     for k in range(len(height)):
         i, j = touch.row[k], touch.column[k]
         now[k, :3] = touch.force[k]
         for b in range(3):
             moved = y[b, i, j] - alpha * v[b, i, j] - touch.at[k, b]
+            if b == W and touch.lead[k] != 0.0:
+                moved -= touch.lead[k] * (y[PHI_X, i, j] - alpha * v[PHI_X, i, j])
             if b < W:
                 moved += height[k] * (y[b + 3, i, j] - alpha * v[b + 3, i, j])
             for a in range(3):
                 now[k, a] += touch.tangent[k, a, b] * moved
         for a in range(2):
             now[k, a + 3] = height[k] * now[k, a]
+        if touch.lead[k] != 0.0:
+            now[k, PHI_X] -= touch.lead[k] * now[k, W]
 
 
 @compiled(nogil=True)

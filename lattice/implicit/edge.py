@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from lattice.contact import EdgeContact
+from lattice.contact import EdgeContact, Lever
 from lattice.grid import Array, IntArray
 from lattice.implicit.linear import CrackedSystem
 from lattice.state import StepError
@@ -23,11 +23,11 @@ NEWTON, HALVINGS = 100, 12  #: iterations before the step is given up; halvings 
 
 
 class Edge:
-    """Points at height z (m,) above nodes (m,), in the two systems of a sheet."""
+    """Points at the end of levers on nodes (m,), in the two systems of a sheet."""
 
-    def __init__(self, in_plane: CrackedSystem, out_of_plane: CrackedSystem, nodes: IntArray, z: Array):
-        self._in, self._out, self._z = in_plane, out_of_plane, z
-        self._flat = not z.any()
+    def __init__(self, in_plane: CrackedSystem, out_of_plane: CrackedSystem, nodes: IntArray, lever: Lever):
+        self._in, self._out, self._lever = in_plane, out_of_plane, lever
+        self._flat = lever.none
         self._u_dof = (2 * nodes[:, None] + np.arange(2)).ravel()
         self._q_dof = 3 * nodes if self._flat else (3 * nodes[:, None] + np.arange(3)).ravel()
 
@@ -55,13 +55,13 @@ class Edge:
     def response(self, f: Array) -> tuple[Array, Array]:
         """Displacement of all nodes, (n, 2) and (n, 3), under forces (m, 3) at the points."""
         u = self._in.response(self._u_dof, f[:, :2].ravel()).reshape(-1, 2)
-        z = self._z
-        on_q = f[:, 2] if self._flat else np.column_stack((f[:, 2], z * f[:, 0], z * f[:, 1])).ravel()
+        on_q = f[:, 2] if self._flat else self._on_node(f).ravel()
         return u, self._out.response(self._q_dof, on_q).reshape(-1, 3)
 
     def compliance(self) -> Array:
         """Of the points, (m, 3, m, 3) [m/N]: T C T^T with y = T x, of both systems."""
-        m, z = len(self._z), self._z
+        z, lead = self._lever
+        m = len(z)
         G = np.zeros((m, 3, m, 3))
         G[:, :2, :, :2] = self._in.compliance(self._u_dof).reshape(m, 2, m, 2)
         if self._flat:
@@ -69,4 +69,16 @@ class Edge:
             return G
         C = self._out.compliance(self._q_dof).reshape(m, 3, m, 3)[:, LEVER][:, :, :, LEVER]
         arm = np.column_stack((z, z, np.ones(m)))
-        return np.asarray(G + arm[:, :, None, None] * C * arm)
+        if not lead.any():
+            return np.asarray(G + arm[:, :, None, None] * C * arm)
+        T = arm[:, :, None] * np.eye(3)
+        T[:, 2, 0] = -lead
+        return np.asarray(G + np.einsum("iab,ibjc,jdc->iajd", T, C, T, optimize=True))
+
+    def _on_node(self, f: Array) -> Array:
+        """Forces (m, 3) at the points as they act on w, phi_x and phi_y of the nodes, (m, 3) [N], [N m]."""
+        z, lead = self._lever
+        out = np.column_stack((f[:, 2], z * f[:, 0], z * f[:, 1]))
+        if lead.any():
+            out[:, 1] -= lead * f[:, 2]
+        return out

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from lattice.assembly import foundation, in_plane_mass, in_plane_springs, out_of_plane_mass, out_of_plane_springs
-from lattice.contact import EdgeContact, point_displacement
+from lattice.contact import EdgeContact, Lever, lever_of, point_displacement
 from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.implicit.edge import Edge
@@ -113,7 +113,7 @@ class Engine:
             state.u_dot + back * first.u_acc,
             state.q_dot + back * first.q_acc,
         )
-        return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)), contact.height)
+        return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)), lever_of(contact))
 
     def _euler(self, t: float, s: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Stage:
         """Backward Euler over a: (M/a^2 + C/a + K) x = f + M (x_0/a^2 + v_0/a) + C x_0 / a."""
@@ -125,14 +125,14 @@ class Engine:
             b_q = b_q + self.alpha / a * self._out.spring_force(s.q.ravel())
         u, q, f = self._in.solve(b_u).reshape(-1, 2), self._out.solve(b_q).reshape(-1, 3), np.zeros((0, 3))
         if len(nodes):
-            edge = self.edge(nodes, contact.height)
-            f = edge.force(t, point_displacement(u, q, nodes, contact.height), contact)
+            edge = self.edge(nodes, lever_of(contact))
+            f = edge.force(t, point_displacement(u, q, nodes, lever_of(contact)), contact)
             if f.any():
                 du, dq = edge.response(f)
                 u, q = u + du, q + dq
         u_dot, q_dot = (u - s.u) / a, (q - s.q) / a
         return Stage(State(u, q, u_dot, q_dot), (u_dot - s.u_dot) / a, (q_dot - s.q_dot) / a, f)
 
-    def edge(self, nodes: IntArray, height: Array) -> Edge:
-        """Points at these heights (m,) [m] above these nodes (m,), in the systems in use."""
-        return Edge(self._in, self._out, nodes, height)
+    def edge(self, nodes: IntArray, lever: Lever) -> Edge:
+        """Points at the end of these levers on nodes (m,), in the systems in use."""
+        return Edge(self._in, self._out, nodes, lever)

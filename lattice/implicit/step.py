@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lattice.contact import Lever
 from lattice.grid import Array
 from lattice.state import State
 
@@ -36,7 +37,7 @@ class Step:
     dt: float
     start: State
     stages: tuple[Stage, Stage]
-    height: Array  #: (m,) at which the contact acts [m]
+    lever: Lever  #: at the end of which the contact acts
 
     @property
     def state(self) -> State:

@@ -16,6 +16,8 @@ from lattice.ice import Ice
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -26,7 +28,9 @@ LIFT = (RHO_W - RHO_I) * G * LENGTH * H * WIDTH  #: of a flooded block under wat
 
 
 def layer_with(solids, **physics):
-    return RubbleLayer(RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, **physics), WIDTH, solids=lambda y: solids)
+    return RubbleLayer(
+        RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, **physics), WIDTH, solids=lambda y: plane(solids)
+    )
 
 
 def add(layer, x, z, angle=0.0, flooded=None):
@@ -35,15 +39,13 @@ def add(layer, x, z, angle=0.0, flooded=None):
     middle = x * c + z * s
     layer.add_block(
         0,
-        BOX @ np.array([(c, s), (-s, c)]) + [x, z],
-        middle + np.array([-0.5, 0.5]) * LENGTH,
-        np.array([WIDTH]),
-        RHO_I,
-        (0.0, 0.0),
-        0.0,
-        0.0,
-        0,
-        angle,
+        Slab(
+            BOX @ np.array([(c, s), (-s, c)]) + [x, z],
+            middle + np.array([-0.5, 0.5]) * LENGTH,
+            np.array([WIDTH]),
+            RHO_I,
+            angle,
+        ),
         flooded=flooded,
     )
 

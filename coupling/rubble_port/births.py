@@ -42,12 +42,13 @@ def centre_of(fragment: Fragment) -> Array:
     return np.average(fragment.position[:, [0, 2]], axis=0, weights=mass if mass.any() else fragment.length)
 
 
-def momenta_of(fragment: Fragment, about: Array) -> tuple[Array, Array]:
-    """Momentum of a fragment's nodes x, y, z and angular momentum about a point in the x-z plane (4,), and what they
-    would be if no parts cancelled (4,): their scale.
+def momenta_of(fragment: Fragment, thickness: float, about: Array) -> tuple[Array, Array]:
+    """Momentum of a fragment's nodes x, y, z and angular momentum about a point in the x-z plane (4,), and their scale.
+
+    The scale (4,) is what they would be if no parts cancelled. ``thickness`` of the ice [m].
     """
     mass, v = np.maximum(fragment.mass, 0.0)[:, None], fragment.velocity
-    arm, own = fragment.position[:, [0, 2]] - about, mass[:, 0] * fragment.thickness**2 / 12.0
+    arm, own = fragment.position[:, [0, 2]] - about, mass[:, 0] * thickness**2 / 12.0
     parts = np.column_stack(
         (mass * v, mass[:, 0] * arm[:, 0] * v[:, 2], -mass[:, 0] * arm[:, 1] * v[:, 0], -own * fragment.tilt_rate)
     )
@@ -55,16 +56,16 @@ def momenta_of(fragment: Fragment, about: Array) -> tuple[Array, Array]:
     return np.append(total[:3], total[3:].sum()), np.append(np.full(3, scale[:3].max()), scale[3:].sum())
 
 
-def births(fragment: Fragment, columns_per_section: int) -> Iterator[BlockBirth]:
+def births(fragment: Fragment, thickness: float, columns_per_section: int) -> Iterator[BlockBirth]:
     """The blocks of a fragment: per section, then per gapless run of rows, front to rear."""
     section = fragment.column // columns_per_section
     for key in np.unique(section):
         rows = np.unique(fragment.row[section == key])
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
-            yield _birth(fragment, np.flatnonzero((section == key) & np.isin(fragment.row, run)))
+            yield _birth(fragment, thickness, np.flatnonzero((section == key) & np.isin(fragment.row, run)))
 
 
-def _birth(f: Fragment, n: IntArray) -> BlockBirth:
+def _birth(f: Fragment, h: float, n: IntArray) -> BlockBirth:
     ice_x = f.position[n, 0] + f.lead[n] - 0.5 * f.length[n]
     ice_z = f.position[n, 2] - (ice_x - f.position[n, 0]) * np.tan(f.tilt[n])
     volume = f.length[n] * f.width[n]
@@ -75,10 +76,10 @@ def _birth(f: Fragment, n: IntArray) -> BlockBirth:
     node = f.position[n][:, [0, 2]]  # where the lattice has the mass
     centre = np.average(node, axis=0, weights=m)
     velocity = np.average(f.velocity[n], axis=0, weights=m)
-    polygon, cuts, widths = _prism(f, n, ice_x, middle, angle)
+    polygon, cuts, widths = _prism(f, h, n, ice_x, middle, angle)
     arm = node - centre
     spin = m * (arm[:, 0] * (f.velocity[n, 2] - velocity[2]) - arm[:, 1] * (f.velocity[n, 0] - velocity[0]))
-    own = m * f.thickness**2 / 12.0  # rotary inertia of a node (2.22)
+    own = m * h**2 / 12.0  # rotary inertia of a node (2.22)
     inertia = float((m * (arm**2).sum(axis=1) + own).sum())
     omega = float((spin - own * f.tilt_rate[n]).sum() / inertia)
     y = float(np.average(f.position[n, 1], weights=m))
@@ -94,7 +95,7 @@ def _angle(x: Array, z: Array, tilt: Array, weight: Array) -> float:
     return float(np.arctan((weight * dx * dz).sum() / spread))
 
 
-def _prism(f: Fragment, n: IntArray, ice_x: Array, middle: Array, angle: float) -> tuple[Array, Array, Array]:
+def _prism(f: Fragment, h: float, n: IntArray, ice_x: Array, middle: Array, angle: float) -> tuple[Array, Array, Array]:
     """Outline with the crushed edge cut off, and its widths row by row."""
     rows, at = np.unique(f.row[n], return_inverse=True)  # front to rear
     length = np.array([f.length[n][at == k].max() for k in range(len(rows))])
@@ -103,7 +104,7 @@ def _prism(f: Fragment, n: IntArray, ice_x: Array, middle: Array, angle: float) 
     front = middle @ axis + float(((ice_x - middle[0]) / axis[0] + 0.5 * f.length[n]).max())
     edges = front - np.concatenate(([0.0], np.cumsum(length)))
     n0 = n[at == 0]
-    outline = _bevelled(edges[-1], front, f.thickness, float(f.cut[n0].max()), float(f.cut_tan[n0].max()), f.cut_face)
+    outline = _bevelled(edges[-1], front, h, float(f.cut[n0].max()), float(f.cut_tan[n0].max()), f.cut_face)
     normal = np.array([-axis[1], axis[0]])
     polygon = outline[:, :1] * axis + (middle @ normal + outline[:, 1:]) * normal
     return polygon, edges[::-1].copy(), width[::-1].copy()

@@ -41,8 +41,10 @@ def departure(t_ns: int, load: Array, cells: int, f: Fragment, at_structure: boo
 
 
 def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) -> Event:
-    """Where the lattice's foundation ends. It pulls lifted ice down with rho_w g w, the missing buoyancy. That is right
-    until the underside leaves the water at w = draft; beyond, it pulls too much.
+    """Where the lattice's foundation ends.
+
+    It pulls lifted ice down with rho_w g w, the missing buoyancy. That is right until the underside leaves the water at
+    w = draft; beyond, it pulls too much.
     """
     text = (
         f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "

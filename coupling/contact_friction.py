@@ -1,4 +1,4 @@
-"""How much of a contact's force on the sheet's edge is friction: the books keep its work apart from that of crushing.
+"""The part of a contact's force on the sheet's edge that is friction: its work is booked apart from that of crushing.
 
 A node's force is F_n + mu f (N z - n_z F_n) / s, with N the sum of the normal forces at its points, f the touching face
 (+1 upper), s^2 = 1 - n_z^2; n_z depends on the height alone. So N = F_z / (n_z + mu f s), and in the horizontal
@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coupling.interface import Array
-from coupling.structure import Structure
+from coupling.interface import Array, Structure
 
 
 def friction_part(structure: Structure, mu: float, face: float, level: float, y: Array, force: Array) -> Array:
@@ -19,9 +18,7 @@ def friction_part(structure: Structure, mu: float, face: float, level: float, y:
     on = np.flatnonzero(force.any(axis=1))
     if not len(on) or mu == 0.0:
         return part
-    slope = np.diff(structure.r) / np.diff(structure.z)
-    piece = np.clip(np.searchsorted(structure.z, level + y[on, 2], side="right") - 1, 0, len(slope) - 1)
-    n_z = -slope[piece] / np.sqrt(1.0 + slope[piece] ** 2)
+    n_z = structure.normal_z(level + y[on, 2])
     s = np.sqrt(1.0 - n_z**2)
     normal = force[on, :3] / (1.0 - mu * face * n_z / s)[:, None]
     normal[:, 2] = n_z * force[on, 2] / (n_z + mu * face * s)
