@@ -34,5 +34,6 @@ def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
         "contact_work": e.contact,
         "rubble_work": e.received,
         "sheet_energy_residual": e.residual,
+        **{f"crack_{cause}_loss": value for cause, value in e.engine.crack_losses.items()},
         **{name + LOAD_WORK: work.at(drift) for name, work in e.loads.items() if name != RUBBLE},
     }
