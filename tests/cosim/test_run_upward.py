@@ -54,7 +54,7 @@ def test_mass_closes_and_no_block_stands_in_the_structure(case, request):
     layer = scheduler.rubble.layer
     for section in layer.sections.values():
         for block in section.blocks:
-            deep = overlap_area(block.outline, section.solids)
+            deep = overlap_area(block.outline, section.cut.polygons)
             assert deep < 4.0 * layer.physics.slop * np.sqrt(block.prism.area), block.outline
 
 
