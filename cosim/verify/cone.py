@@ -15,7 +15,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, near
 from coupling.rubble_port import OUTLINE_TOLERANCE
-from coupling.structure import Structure, cone
+from coupling.structure import Revolved, cone
 from rubble.arrays import Array
 from rubble.block import Slab
 from rubble.cut import revolved
@@ -57,7 +57,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
         WIDTH,
         origin=y,
         solids=lambda at: revolved(
-            convex_parts(structure.section_outline(at, structure.bottom, structure.top, OUTLINE_TOLERANCE))
+            convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE))
         ),
     )
     z, angle = -1.5, 2.0 * np.pi * (np.arange(128) + 0.5) / 128
@@ -92,7 +92,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
 
 
 def _statics(
-    p: dict[str, Any], structure: Structure, y: float, centre: Array, velocity: Array, across: float, lift: float
+    p: dict[str, Any], structure: Revolved, y: float, centre: Array, velocity: Array, across: float, lift: float
 ) -> Array:
     """Force on the structure (3,) of a round block at ``centre`` that slides with ``velocity``, across at a speed."""
     z = np.linspace(centre[1] - SIZE, centre[1] + SIZE, 2001)

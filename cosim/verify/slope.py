@@ -47,7 +47,7 @@ def slide(p: dict[str, Any], mu: float, slope: float, wet: bool) -> tuple[float,
     layer = RubbleLayer(
         physics,
         WIDTH,
-        solids=lambda y: plane_cut(convex_parts(plane.section_outline(y, plane.bottom, plane.top), back=1e4)),
+        solids=lambda y: plane_cut(convex_parts(plane.section(y, plane.bottom, plane.top, 0.01)[0], back=1e4)),
     )
     z = up * 100.0
     box = np.array([(-LENGTH / 2, 0.0), (LENGTH / 2, 0.0), (LENGTH / 2, HEIGHT), (-LENGTH / 2, HEIGHT)])

@@ -94,7 +94,7 @@ def _rig(p: dict[str, Any], length: float, backfill: str) -> tuple[RubbleLayer, 
     layer = RubbleLayer(
         physics,
         pitch=2.0 * length,
-        solids=lambda y: plane(convex_parts(slope.section_outline(y, slope.bottom, slope.top), back=500.0)),
+        solids=lambda y: plane(convex_parts(slope.section(y, slope.bottom, slope.top, 0.01)[0], back=500.0)),
     )
     cot = 1.0 / tan(radians(p["slope"]))
     tip = cot * (draft - thick) - 0.01  # its upper corner just ahead of the slope

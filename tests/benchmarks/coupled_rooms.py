@@ -36,9 +36,11 @@ from coupling.ledger import Ledger
 from coupling.rubble_port import RubblePort
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
+from coupling.sheet_port.front import Front
 from lattice.energy import EnergyBooks
-from lattice.engine import Engine
-from lattice.linear import CrackedSystem
+from lattice.implicit.edge import Edge
+from lattice.implicit.engine import Engine
+from lattice.implicit.linear import CrackedSystem
 from lattice.sheet import Sheet
 from rubble.contacts import accumulate
 from rubble.layer import RubbleLayer
@@ -57,11 +59,11 @@ DOORS = {
     "failure checks": [(Sheet, "_utilisation"), (Sheet, "_cells"), (Sheet, "_release_loose"), (Sheet, "_locate")],
     "edge contact": [
         (OverlapContact, "evaluate"),
-        (OverlapContact, "settle"),
-        (Engine, "_contact_force"),
-        (SheetPort, "_crush"),
+        (OverlapContact, "close_window"),
+        (Edge, "force"),
+        (Front, "crush"),
     ],
-    "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_fragment"), (SheetPort, "_renew_edge")],
+    "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_release"), (Front, "renew")],
     "rubble": [(RubbleLayer, "advance")],
     "exchange": [
         (SheetPort, "edges"),
@@ -75,7 +77,7 @@ DOORS = {
         (EnergyBooks, "book_served"),
         (EnergyBooks, "loss_rate"),
         (Ledger, "close_window"),
-        (SheetPort, "_crushed_edge"),
+        (Front, "_crushed_now"),
         (lattice.sheet, "between"),
         (coupling.scheduler, "force_budget"),
         (rubble.layer.table, "budget"),

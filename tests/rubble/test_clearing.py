@@ -24,7 +24,7 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
         physics,
         WIDTH,
         domain=Domain(x_max=14.0, depth=60.0, y_max=30.0),
-        solids=lambda y: revolved(convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3))),
+        solids=lambda y: revolved(convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3))),
     )
     random, draft, fed, rows = np.random.default_rng(1), H * 846 / rho_w, [], []
     for window in range(round(seconds / 0.05)):
@@ -70,7 +70,7 @@ def test_a_block_passes_under_the_toe():
         RubblePhysics(rho_i=1006.0, rho_w=1006.0, thickness=H, form_drag=0.0, skin_drag=0.0),
         WIDTH,
         domain=Domain(x_max=14.0),
-        solids=lambda y: revolved(convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3))),
+        solids=lambda y: revolved(convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3))),
     )
     for z in (-7.0, -9.1):
         outline = np.array([(-12, z - 1), (-8, z - 1), (-8, z + 1), (-12, z + 1)], dtype=float)
@@ -97,7 +97,7 @@ def pressed_aside(feed_speed):
     layer = RubbleLayer(
         physics,
         WIDTH,
-        solids=lambda y: revolved(convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3))),
+        solids=lambda y: revolved(convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3))),
     )
     draft = H * 846 / 1006
     outline = np.array([(-14.0, -draft), (-10.0, -draft), (-10.0, H - draft), (-14.0, H - draft)])

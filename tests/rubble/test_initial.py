@@ -26,7 +26,7 @@ def pile(volume, sections, seed=2018, mu=0.1, threads=1):
         PITCH,
         domain=Domain(x_max=21.0, depth=60.0, y_max=90.0),
         threads=threads,
-        solids=lambda y: revolved(convex_parts(SHAPE.section_outline(y, -20.0, 5.0, 1e-3))),
+        solids=lambda y: revolved(convex_parts(*SHAPE.section(y, -20.0, 5.0, 1e-3))),
     )
     fronts = {}
     for key in sections:

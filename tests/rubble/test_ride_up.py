@@ -27,7 +27,7 @@ def on_slope(mu=0.1, top=3.0, foot=0.6):
         physics,
         WIDTH,
         domain=Domain(x_max=crest + 2 * H),
-        solids=lambda y: plane(convex_parts(shape.section_outline(y, -10.0, top), back=crest + 100.0)),
+        solids=lambda y: plane(convex_parts(shape.section(y, -10.0, top, 0.01)[0], back=crest + 100.0)),
     )
     along, out = np.array([np.cos(SLOPE), np.sin(SLOPE)]), np.array([-np.sin(SLOPE), np.cos(SLOPE)])
     start = foot / np.sin(SLOPE) * along + 1e-4 * out
@@ -97,7 +97,7 @@ def test_on_an_upward_cone_ice_clears_sideways(y):
         physics,
         WIDTH,
         domain=Domain(x_max=3.5, y_max=20.0),
-        solids=lambda at: revolved(convex_parts(shape.section_outline(at, -4.0, 8.0, 1e-3))),
+        solids=lambda at: revolved(convex_parts(*shape.section(at, -4.0, 8.0, 1e-3))),
     )
     draft = H * RHO / 999.8
     outline = np.array([(-5.0, -draft), (-3.5, -draft), (-3.5, H - draft), (-5.0, H - draft)])
