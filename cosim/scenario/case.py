@@ -9,15 +9,15 @@ from cosim.scenario.units import (
 
 
 class Case(Section):
-    """[scenario]"""
+    """[scenario] What runs, and for how long."""
 
-    title: str
-    description: str = ""
+    title: str  #: one line, shown by every command
+    description: str = ""  #: what happens in the case, and where it is from
     duration: Time  #: simulated time [s]
     seed: int = 0  #: of every random number of the run
 
 
 class Recording(Section):
-    """[recording]"""
+    """[recording] What of a run is kept."""
 
     every: Time = 0.5  #: time between recorded frames; loads are recorded for every window [s]

@@ -15,7 +15,7 @@ from cosim.scenario.units import (
 
 
 class Coupling(Section):
-    """[coupling]"""
+    """[coupling] Time windows, and what sheet and rubble exchange in them."""
 
     window: Time = 0.05  #: time window (macro step) [s]; with steering the first one
     #: serial-explicit: the sheet under the last forces, then the rubble; parallel-explicit: both with the last data;

@@ -35,23 +35,23 @@ NodeCounts = Annotated[tuple[int, int], BeforeValidator(_two_counts)]
 class BeamTest(Section):
     """[ice.beam_test] cantilever that sets the limit near discontinuities (thesis 4.2.2)."""
 
-    length: Length
-    width: Length
-    failure_load: Force
-    factor: float = Field(0.75, gt=0, le=1)  #: f of (4.31)
+    length: Length  #: L_b of (4.27), from root to load [m]
+    width: Length  #: w; the limit ends where d reaches twice this [m]
+    failure_load: Force  #: F_c of (4.27) [N]
+    factor: float = Field(0.75, gt=0, le=1)  #: f of (4.30) and (4.31), found by simulating the beam
 
 
 class Ice(Section):
-    """[ice]"""
+    """[ice] The sheet's material; blocks have the same."""
 
-    thickness: Length
-    density: Density
-    youngs_modulus: Stress
-    poisson_ratio: float
-    tensile_strength: Stress
-    flexural_strength: Stress
-    compressive_strength: Stress
-    shear_strength: Stress
+    thickness: Length  #: h, the same everywhere [m]
+    density: Density  #: rho_i, below that of the water [kg/m3]
+    youngs_modulus: Stress  #: E, effective, of the whole thickness [Pa]
+    poisson_ratio: float  #: nu, 0 to 1/3; below 1/3 a sheet that turns is strained
+    tensile_strength: Stress  #: sigma_t, in-plane [Pa]
+    flexural_strength: Stress  #: sigma_f; without a beam test also the limit beside a crack tip [Pa]
+    compressive_strength: Stress  #: sigma_c, uniaxial; shapes the envelope (4.6) [Pa]
+    shear_strength: Stress  #: out of plane (thesis 5.3) [Pa]
     material_damping: TimeOrZero = 0.0  #: alpha of 2.3.3, proportional to stiffness [s]
     beam_test: BeamTest | None = None
 
@@ -65,10 +65,10 @@ class Ice(Section):
 
 
 class Water(Section):
-    """[water]"""
+    """[water] A Kelvin foundation to the sheet, still water to the blocks."""
 
-    density: Density
-    gravity: Acceleration = 9.81
+    density: Density  #: rho_w [kg/m3]
+    gravity: Acceleration = 9.81  #: g [m/s2]
     damping: Coefficient = 0.1  #: hydrodynamic, as share of sqrt(k_f rho_i h) (thesis 4.2.1)
 
 
@@ -110,13 +110,13 @@ class Sheet(Section):
 
 
 class Drift(Section):
-    """[drift]"""
+    """[drift] Motion of the ice far away."""
 
-    velocity: Velocity
+    velocity: Velocity  #: of the ice along +x, towards the structure [m/s]
 
 
 class Fracture(Section):
-    """[fracture]"""
+    """[fracture] How cells fail."""
 
     #: quasi-static: implicit engine, cracks run between two windows; dynamic: explicit engine with waves and inertia
     propagation: Literal["quasi-static", "dynamic"] = "quasi-static"

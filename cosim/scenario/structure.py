@@ -19,7 +19,7 @@ from cosim.scenario.units import (
 class Structure(Section):
     """[structure] A cone that narrows the way it breaks the ice, or an inclined plane."""
 
-    kind: Literal["cone", "plane"]
+    kind: Literal["cone", "plane"]  #: shape of the surface; a plane is infinitely wide
     breaking: Literal["downward", "upward"] = "downward"  #: which way the face bends the ice
     slope: Angle  #: from the horizontal [rad]
     waterline_radius: Length = None  #: of a cone [m]
