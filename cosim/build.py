@@ -56,6 +56,7 @@ def build(scenario: Scenario) -> Scheduler:
 
 
 def build_steering(scenario: Scenario) -> Steering:
+    """How the length of the windows is chosen."""
     c, substep_ns = scenario.coupling, round(scenario.rubble.substep * NS)
     if c.steering == "fixed":
         return fixed
@@ -64,6 +65,7 @@ def build_steering(scenario: Scenario) -> Steering:
 
 
 def build_ice(scenario: Scenario) -> Ice:
+    """Ice and water of the sheet."""
     i, w = scenario.ice, scenario.water
     test = (
         None
@@ -85,6 +87,7 @@ def build_ice(scenario: Scenario) -> Ice:
 
 
 def build_structure(scenario: Scenario) -> Structure:
+    """The structure, by its kind."""
     s = scenario.structure
     if s.kind == "plane":
         return plane_slope(
@@ -112,6 +115,7 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
+    """The rubble: blocks in sections of whole node columns, in a domain that ends behind the structure."""
     r, i = scenario.rubble, scenario.ice
     physics = RubblePhysics(
         rho_i=i.density,

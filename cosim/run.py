@@ -32,6 +32,7 @@ class Peaks:
         self.value[higher], self.t_ns[higher] = now[higher], t_ns
 
     def to_json(self) -> dict[str, dict[str, float]]:
+        """``{component: {"value" [N], "time" [s]}}``."""
         return {
             name: {"value": float(v), "time": t / NS}
             for name, v, t in zip(COMPONENTS, self.value, self.t_ns.tolist(), strict=True)
@@ -51,6 +52,7 @@ class PeaksByPhase:
             phase.see(t_ns, part)
 
     def to_json(self) -> dict[str, Any]:
+        """``peaks`` of the whole load and ``peaks_by_phase``."""
         return {"peaks": self.total.to_json(), "peaks_by_phase": {name: p.to_json() for name, p in self.of.items()}}
 
 
@@ -102,6 +104,7 @@ class RunResult:
         return {"seconds": SUSTAINED, **peaks.to_json()}
 
     def to_json(self) -> dict[str, Any]:
+        """What ``cosim run --json`` prints, but for the name of the recording."""
         simulated = self.t_ns / NS
         return {
             "scenario": self.scenario.title,
@@ -118,6 +121,7 @@ class RunResult:
 
 
 def event_json(e: Event) -> dict[str, Any]:
+    """An event as ``cosim run --json`` prints it: time [s], load [N], place [m]."""
     return {
         "time": e.t_ns / NS,
         "kind": e.kind,

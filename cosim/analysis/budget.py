@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +12,11 @@ from cosim.analysis.run_data import RunData
 from coupling.budget import AXES, TERMS
 from coupling.interface import Array
 
-if TYPE_CHECKING:
-    pass
-
 
 def rows(run: RunData) -> list[dict[str, Any]]:
-    """The terms [MN] of Fx and Fz at both peaks, in the last window before each circumferential failure (the first of
-    each encounter), and on the mean of the run; empty without a budget.
+    """The terms [MN] of Fx and Fz: at both peaks, before circumferential failures, on the mean; empty without a budget.
+
+    "Before" is the last window before the first failure of each encounter.
     """
     if not run.budget or not len(run.t_ns):
         return []

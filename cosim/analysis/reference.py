@@ -1,6 +1,7 @@
 """Reference files: features that others have measured or computed, with their sources.
 
-A feature names a function of `cosim.analysis.features` and its arguments. Values are quantities with unit; a pair is a range.
+A feature names a function of `cosim.analysis.features` and its arguments. Values are quantities with unit; a pair is a
+range.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ class Feature:
 
 @dataclass(frozen=True)
 class Reference:
+    """What a reference file holds."""
+
     title: str
     features: tuple[Feature, ...]
 

@@ -21,6 +21,7 @@ def writable(path: Path) -> Path:
 
 
 def print_json(content: dict[str, Any]) -> None:
+    """One JSON object on standard output; what is no number becomes null."""
     sys.stdout.write(json.dumps(_finite(content), indent=2, allow_nan=False) + "\n")
 
 

@@ -41,6 +41,7 @@ def upward(quads: IntArray, position: Array) -> IntArray:
 
 
 def triangles(quads: IntArray) -> IntArray:
+    """(2 k, 3) triangles of quads: the first halves of all, then the second."""
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
@@ -49,7 +50,7 @@ def rim(quads: IntArray) -> IntArray:
     edges = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
     key = np.sort(edges, axis=1)
     _, first, count = np.unique(key, axis=0, return_index=True, return_counts=True)
-    return edges[np.sort(first[count == 1])]
+    return np.asarray(edges[np.sort(first[count == 1])])
 
 
 def solid_sheet(position: Array, quads: IntArray, thickness: float) -> tuple[Array, IntArray, IntArray]:

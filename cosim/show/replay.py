@@ -24,8 +24,6 @@ from cosim.show.viewer import headless_viewer, wait_until_loaded
 from coupling.interface import NS, PHASES, Phase
 
 APPLICATION = "cosim"
-
-
 TOTAL_RGB = (235, 235, 235)
 
 

@@ -107,7 +107,8 @@ def _statics(
     return np.asarray(load @ m / (contact @ m) * contact)
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Force of a block at every ``y`` and speed ``across``, measured and by statics."""
     if not max(abs(y) for y in p["y"]) <= 0.85:
         raise ValueError("cone: y is a share of the radius, at most 0.85: the block stands 1.5 m below water")
     quantities = []

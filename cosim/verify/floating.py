@@ -69,6 +69,7 @@ def mean_height(p: dict[str, Any], draft: float, heave: float, substeps: int) ->
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Draft, heave and pitch; ``quick``: fewer periods."""
     draft, area = p["h"] * p["rho_i"] / p["rho_w"], p["length"] * p["width"]
     if not p["rho_i"] < p["rho_w"] or not min(p["length"], p["h"], p["width"]) > 0.0:
         raise ValueError("float: the block must have length, h, width > 0 and float, rho_i < rho_w")
