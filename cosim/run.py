@@ -156,20 +156,20 @@ def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunR
 
 
 def _finish(result: RunResult, scheduler: Scheduler) -> None:
-    books = scheduler.ledger
+    ledger = scheduler.ledger
     result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
     result.ledger = {
-        "mass_error": books.mass_error,
-        "momentum_error": books.momentum_error,
-        "angular_momentum_error": books.angular_momentum_error,
-        "angular_momentum_change": books.angular_momentum_change,
-        "energy_residual": books.energy.relative,
-        "sheet_energy_residual": books.sheet_energy_residual,
-        **books.energy.terms,
+        "mass_error": ledger.mass_error,
+        "momentum_error": ledger.momentum_error,
+        "angular_momentum_error": ledger.angular_momentum_error,
+        "angular_momentum_change": ledger.angular_momentum_change,
+        "energy_residual": ledger.energy.relative,
+        "sheet_energy_residual": ledger.sheet_energy_residual,
+        **ledger.energy.terms,
         **scheduler.rubble.momenta,
-        "initial_mass": books.initial_mass,
-        "handed_over_mass": books.handed_over_mass,
-        "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
+        "initial_mass": ledger.initial_mass,
+        "handed_over_mass": ledger.handed_over_mass,
+        "crushed_mass": scheduler.sheet.crushed + ledger.trimmed_mass,
         "cleared_mass": scheduler.rubble.cleared_mass,
         "interface_lost": scheduler.power.loss,
         "interface_exchanged": scheduler.power.exchanged,

@@ -21,9 +21,9 @@ def rows(run: RunData) -> list[dict[str, Any]]:
     if not run.budget or not len(run.t_ns):
         return []
     at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
-    moments = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
-    moments += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
-    table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in moments for axis in ("fz", "fx")]
+    instants = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
+    instants += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
+    table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in instants for axis in ("fz", "fx")]
     return table + [_row(run, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
 
 

@@ -18,8 +18,8 @@ def ice_colour(damage: Array, utilisation: Array) -> Array:
     """RGB 0-255 of sheet nodes: pale ice, blue, orange to red as utilisation goes to 1; cracked ice is dark."""
     u = np.clip(np.nan_to_num(utilisation), 0, 1)
     rgb = np.stack([np.interp(u, _STOPS, _RGB[:, k]) for k in range(3)], axis=1)
-    share = np.clip(damage, 0, 1)[:, None]
-    return rgb * (1 - share) + np.array(CRACKED_RGB) * share
+    dark = np.clip(damage, 0, 1)[:, None]
+    return rgb * (1 - dark) + np.array(CRACKED_RGB) * dark
 
 
 def cell_quads(intact: BoolArray, cell_shape: tuple[int, int]) -> IntArray:
@@ -104,8 +104,8 @@ def along_edges(points: Array, edges: IntArray, spacing: float) -> tuple[Array, 
     count = np.maximum(np.ceil(np.linalg.norm(b - a, axis=1) / spacing), 1).astype(np.int64)
     owner = np.repeat(np.arange(len(edges)), count)
     step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-    share = (step / np.repeat(count, count))[:, None]
-    return a[owner] * (1 - share) + b[owner] * share, owner
+    along = (step / np.repeat(count, count))[:, None]
+    return a[owner] * (1 - along) + b[owner] * along, owner
 
 
 def prism_edges(blocks: BlockTable) -> tuple[IntArray, IntArray]:

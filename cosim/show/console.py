@@ -19,6 +19,11 @@ def print_line(text: str) -> None:
     stdout.print(text, highlight=False, markup=False, soft_wrap=True)
 
 
+def print_progress(text: str) -> None:
+    """A line on standard error: how far it is."""
+    stderr.print(text, highlight=False, markup=False, soft_wrap=True)
+
+
 def warn(text: str) -> None:
     """A warning on standard error."""
     stderr.print(f"warning: {text}", style="yellow", highlight=False, markup=False, soft_wrap=True)

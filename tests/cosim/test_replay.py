@@ -45,7 +45,7 @@ def near(image, rgb, reach=40):
 def photograph(run_file, out):
     """What the views complain about; skipped where no driver is installed."""
     try:
-        return replay.screenshot(run_file, out, at=10.0, size=(1400, 900), settle=1.0)
+        return replay.screenshot(run_file, out, at=10.0, size=(1400, 900), fade=1.0)
     except FailedError as error:
         if "Vulkan" in str(error):
             pytest.skip(str(error))
