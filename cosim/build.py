@@ -22,7 +22,7 @@ from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.sheet import Sheet
-from lattice.stiffness import hrennikoff
+from lattice.stiffness import STIFFNESS_SETS
 from rubble.layer import Domain
 from rubble.physics import RubblePhysics
 
@@ -108,10 +108,11 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
         held[np.concatenate((grid.edge_nodes("y-"), grid.edge_nodes("y+")))] |= (s.sides == "held", True)
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     window, alpha = scenario.coupling.window, scenario.ice.material_damping
+    springs = STIFFNESS_SETS[s.stiffness](ice)
     if scenario.fracture.propagation == "dynamic":
-        return ExplicitSheet(grid, ice, hrennikoff(ice), window, held=held, damping=damping, alpha=alpha)
+        return ExplicitSheet(grid, ice, springs, window, held=held, damping=damping, alpha=alpha)
     windows = max(1, round(scenario.fracture.longest_step / window))
-    return Sheet(grid, ice, hrennikoff(ice), window, held=held, damping=damping, alpha=alpha, long_step=windows)
+    return Sheet(grid, ice, springs, window, held=held, damping=damping, alpha=alpha, long_step=windows)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:

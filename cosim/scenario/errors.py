@@ -93,14 +93,14 @@ def _keys(model: type[BaseModel], prefix: str = "") -> list[str]:
 
 
 def _nearest(model: type[BaseModel], location: list[str]) -> str:
-    """The known key that is meant most likely: a near one of this section, the same one of another section."""
+    """The known key that is meant most likely: the same one of another section, a near one of this section."""
     known = list(_section(model, location[:-1]).model_fields)
-    near = nearest(location[-1], known)
-    if near:
-        return f"did you mean {'.'.join([*location[:-1], near])}?"
     elsewhere = [key for key in _keys(model) if key.split(".")[-1] == location[-1]]
     if elsewhere:
         return f"did you mean {elsewhere[0]}?"
+    near = nearest(location[-1], known)
+    if near:
+        return f"did you mean {'.'.join([*location[:-1], near])}?"
     return f"known here: {', '.join(known)}"
 
 

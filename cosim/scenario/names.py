@@ -28,6 +28,13 @@ def contacts() -> Iterable[str]:
     return CONTACTS
 
 
+def stiffness_sets() -> Iterable[str]:
+    """Sets of spring stiffnesses of the lattice."""
+    from lattice.stiffness import STIFFNESS_SETS
+
+    return STIFFNESS_SETS
+
+
 def one_of(table: Callable[[], Iterable[str]]) -> AfterValidator:
     """Refuses a name that the table does not hold, with the one that is meant most likely."""
 
@@ -40,4 +47,5 @@ def one_of(table: Callable[[], Iterable[str]]) -> AfterValidator:
 
 
 Scheme = Annotated[str, one_of(schemes)]
+StiffnessSet = Annotated[str, one_of(stiffness_sets)]
 ContactModel = Annotated[str, one_of(contacts)]
