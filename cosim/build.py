@@ -23,7 +23,7 @@ from lattice.floe import Floe
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.sheet import Sheet
-from lattice.stiffness import hrennikoff
+from lattice.stiffness import STIFFNESS_SETS
 from rubble.domain import Domain
 from rubble.physics import RubblePhysics
 
@@ -57,6 +57,7 @@ def build(scenario: Scenario) -> Scheduler:
 
 
 def build_steering(scenario: Scenario) -> Steering:
+    """How the length of the windows is chosen."""
     c, substep_ns = scenario.coupling, round(scenario.rubble.substep * NS)
     if c.steering == "fixed":
         return fixed
@@ -65,6 +66,7 @@ def build_steering(scenario: Scenario) -> Steering:
 
 
 def build_ice(scenario: Scenario) -> Ice:
+    """Ice and water of the sheet."""
     i, w = scenario.ice, scenario.water
     test = (
         None
@@ -86,6 +88,7 @@ def build_ice(scenario: Scenario) -> Ice:
 
 
 def build_structure(scenario: Scenario) -> Structure:
+    """The structure, by its kind."""
     s = scenario.structure
     if s.kind == "plane":
         return plane_slope(
@@ -106,13 +109,15 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
         held[np.concatenate((grid.edge_nodes("y-"), grid.edge_nodes("y+")))] |= (s.sides == "held", True)
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     window, alpha = scenario.coupling.window, scenario.ice.material_damping
+    springs = STIFFNESS_SETS[s.stiffness](ice)
     if scenario.fracture.propagation == "dynamic":
-        return ExplicitSheet(grid, ice, hrennikoff(ice), window, held=held, damping=damping, alpha=alpha)
+        return ExplicitSheet(grid, ice, springs, window, held=held, damping=damping, alpha=alpha)
     windows = max(1, round(scenario.fracture.longest_step / window))
-    return Sheet(grid, ice, hrennikoff(ice), window, held=held, damping=damping, alpha=alpha, long_step=windows)
+    return Sheet(grid, ice, springs, window, held=held, damping=damping, alpha=alpha, long_step=windows)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
+    """The rubble: blocks in sections of whole node columns, in a domain that ends behind the structure."""
     r, i = scenario.rubble, scenario.ice
     physics = RubblePhysics(
         rho_i=i.density,

@@ -6,12 +6,10 @@ A run calls ``on_start`` once, ``on_frame`` after every time window and ``on_clo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from cosim.scenario.scenario import Scenario
 from coupling.interface import Array, Frame, IntArray
-
-if TYPE_CHECKING:
-    from cosim.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +23,20 @@ class RunInfo:
     duration_ns: int
     window_ns: int
 
+    @property
+    def thickness(self) -> float:
+        """Of the ice [m]."""
+        return float(self.scenario.ice.thickness)
+
 
 class Observer(Protocol):
     """Sees every window of a run, in order."""
 
-    def on_start(self, run_info: RunInfo) -> None: ...
+    def on_start(self, run_info: RunInfo) -> None:
+        """Once, before the first window."""
 
-    def on_frame(self, frame: Frame) -> None: ...
+    def on_frame(self, frame: Frame) -> None:
+        """After every window; the frame is kept by nobody else and must not be changed."""
 
-    def on_close(self) -> None: ...
+    def on_close(self) -> None:
+        """Once at the end, also after a failure."""

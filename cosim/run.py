@@ -32,6 +32,7 @@ class Peaks:
         self.value[higher], self.t_ns[higher] = now[higher], t_ns
 
     def to_json(self) -> dict[str, dict[str, float]]:
+        """``{component: {"value" [N], "time" [s]}}``."""
         return {
             name: {"value": float(v), "time": t / NS}
             for name, v, t in zip(COMPONENTS, self.value, self.t_ns.tolist(), strict=True)
@@ -51,6 +52,7 @@ class PeaksByPhase:
             phase.see(t_ns, part)
 
     def to_json(self) -> dict[str, Any]:
+        """``peaks`` of the whole load and ``peaks_by_phase``."""
         return {"peaks": self.total.to_json(), "peaks_by_phase": {name: p.to_json() for name, p in self.of.items()}}
 
 
@@ -102,6 +104,7 @@ class RunResult:
         return {"seconds": SUSTAINED, **peaks.to_json()}
 
     def to_json(self) -> dict[str, Any]:
+        """What ``cosim run --json`` prints, but for the name of the recording."""
         simulated = self.t_ns / NS
         return {
             "scenario": self.scenario.title,
@@ -118,6 +121,7 @@ class RunResult:
 
 
 def event_json(e: Event) -> dict[str, Any]:
+    """An event as ``cosim run --json`` prints it: time [s], load [N], place [m]."""
     return {
         "time": e.t_ns / NS,
         "kind": e.kind,
@@ -152,20 +156,20 @@ def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunR
 
 
 def _finish(result: RunResult, scheduler: Scheduler) -> None:
-    books = scheduler.ledger
+    ledger = scheduler.ledger
     result.fragments, result.blocks = scheduler.fragments, scheduler.rubble.blocks().count
     result.ledger = {
-        "mass_error": books.mass_error,
-        "momentum_error": books.momentum_error,
-        "angular_momentum_error": books.angular_momentum_error,
-        "angular_momentum_change": books.angular_momentum_change,
-        "energy_residual": books.energy.relative,
-        "sheet_energy_residual": books.sheet_energy_residual,
-        **books.energy.terms,
+        "mass_error": ledger.mass_error,
+        "momentum_error": ledger.momentum_error,
+        "angular_momentum_error": ledger.angular_momentum_error,
+        "angular_momentum_change": ledger.angular_momentum_change,
+        "energy_residual": ledger.energy.relative,
+        "sheet_energy_residual": ledger.sheet_energy_residual,
+        **ledger.energy.terms,
         **scheduler.rubble.momenta,
-        "initial_mass": books.initial_mass,
-        "handed_over_mass": books.handed_over_mass,
-        "crushed_mass": scheduler.sheet.crushed + books.trimmed_mass,
+        "initial_mass": ledger.initial_mass,
+        "handed_over_mass": ledger.handed_over_mass,
+        "crushed_mass": scheduler.sheet.crushed + ledger.trimmed_mass,
         "cleared_mass": scheduler.rubble.cleared_mass,
         "interface_lost": scheduler.power.loss,
         "interface_exchanged": scheduler.power.exchanged,

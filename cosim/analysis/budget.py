@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,20 +12,18 @@ from cosim.analysis.run_data import RunData
 from coupling.budget import AXES, TERMS
 from coupling.interface import Array
 
-if TYPE_CHECKING:
-    pass
-
 
 def rows(run: RunData) -> list[dict[str, Any]]:
-    """The terms [MN] of Fx and Fz at both peaks, in the last window before each circumferential failure (the first of
-    each encounter), and on the mean of the run; empty without a budget.
+    """The terms [MN] of Fx and Fz: at both peaks, before circumferential failures, on the mean; empty without a budget.
+
+    "Before" is the last window before the first failure of each encounter.
     """
     if not run.budget or not len(run.t_ns):
         return []
     at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
-    moments = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
-    moments += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
-    table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in moments for axis in ("fz", "fx")]
+    instants = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
+    instants += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
+    table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in instants for axis in ("fz", "fx")]
     return table + [_row(run, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
 
 

@@ -20,6 +20,8 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Row:
+    """A feature beside what the run gives for it, None if the run has none."""
+
     feature: Feature
     simulated: float | None
 

@@ -1,4 +1,4 @@
-"""Features of loading cycles, as plain functions like those of `cosim.analysis.features`; ``n`` counts encounters from 1.
+"""Features of loading cycles, as plain functions like those of `features`; ``n`` counts encounters from 1.
 
 A campaign compares them from run to run: loads of an encounter, mean and period of the cycles, size of the pieces, ice
 fed into the rubble and cleared from it.

@@ -59,8 +59,9 @@ def first_contact(run: RunData) -> float | None:
 
 
 def between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[int | None, int]:
-    """Times of the first events ``after`` and ``before`` [ns]; without them the run's start and end; None: no such
-    event ``after``.
+    """Times of the first events ``after`` and ``before`` [ns]; without them the run's start and end.
+
+    None: there is no such event ``after``.
     """
     first = first_event(run, after) if after else None
     last = first_event(run, before) if before else None
@@ -69,8 +70,10 @@ def between(run: RunData, after: Kinds | None, before: Kinds | None) -> tuple[in
 
 
 def encounters(run: RunData, event: Kinds = "circumferential", component: str = "f") -> list[Encounter]:
-    """All encounters of a run. The drop ends in the first window below `DROP` of the largest load until the event, or,
-    if the load stays higher, in the lowest one before the next event.
+    """All encounters of a run, in order.
+
+    The drop ends in the first window below `DROP` of the largest load until the event, or, if the load stays higher,
+    in the lowest one before the next event.
     """
     load, begin = run.component(component), 0
     found: list[Encounter] = []

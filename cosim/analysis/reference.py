@@ -1,14 +1,13 @@
 """Reference files: features that others have measured or computed, with their sources.
 
-A feature names a function of `cosim.analysis.features` and its arguments. Values are quantities with unit; a pair is a range.
+A feature names a function of `cosim.analysis.features` and its arguments. Values are quantities with unit; a pair is a
+range.
 """
 
 from __future__ import annotations
 
-import difflib
 import inspect
 import tomllib
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from pydantic_core import PydanticCustomError
 from cosim.analysis.features import QUANTITIES
 from cosim.analysis.run_data import COMPONENTS
 from cosim.errors import InputError
+from cosim.nearest import hint
 from cosim.scenario.units import Unit, to_si
 
 OWN_KEYS = ("name", "quantity", "unit", "thesis", "measured", "source", "tolerance", "over")
@@ -44,6 +44,8 @@ class Feature:
 
 @dataclass(frozen=True)
 class Reference:
+    """What a reference file holds."""
+
     title: str
     features: tuple[Feature, ...]
 
@@ -76,7 +78,7 @@ def _feature(entry: dict[str, Any], origin: str) -> Feature:
             raise FeatureError(f"{where}: {key} is missing; add it")
     quantity = entry["quantity"]
     if quantity not in QUANTITIES:
-        raise FeatureError(f"{where}: unknown quantity {quantity!r}; use {_nearest(quantity, tuple(QUANTITIES))}")
+        raise FeatureError(f"{where}: unknown quantity {quantity!r}; {hint(quantity, QUANTITIES)}")
     arguments = {key: value for key, value in entry.items() if key not in OWN_KEYS}
     _check_arguments(where, quantity, arguments)
     ranges = {key: _range(f"{where}: {key}", entry.get(key), entry["unit"]) for key in ("thesis", "measured")}
@@ -104,16 +106,11 @@ def _check_arguments(where: str, quantity: str, arguments: dict[str, Any]) -> No
     known = tuple(parameters)[1:]
     for key in arguments:
         if key not in known:
-            raise FeatureError(f"{where}: unknown key {key!r}; use {_nearest(key, known + OWN_KEYS)}")
+            raise FeatureError(f"{where}: unknown key {key!r}; {hint(key, known + OWN_KEYS)}")
     if arguments.get("component", "fx") not in COMPONENTS:
         raise FeatureError(f"{where}: component = {arguments['component']!r}: use one of {', '.join(COMPONENTS)}")
     if "event" in known and parameters["event"].default is inspect.Parameter.empty and "event" not in arguments:
         raise FeatureError(f'{where}: event is missing; add for example event = "split"')
-
-
-def _nearest(word: str, known: Sequence[str]) -> str:
-    near = difflib.get_close_matches(str(word), known, n=1, cutoff=0.5)
-    return near[0] if near else "one of " + ", ".join(known)
 
 
 def _range(where: str, value: Any, unit: str) -> tuple[float, float] | None:

@@ -45,7 +45,7 @@ class RunData:
         """(n,) one component, ``fx``, ``fy``, ``fz`` or the resultant ``f``, of all phases or of one [N]."""
         load = self.load.sum(axis=1) if phase is None else self.load[:, PHASES.index(phase)]
         if name == "f":
-            return np.linalg.norm(load, axis=1)
+            return np.asarray(np.linalg.norm(load, axis=1))
         out: Array = load[:, AXES.index(name)]
         return out
 
@@ -55,5 +55,6 @@ class RunData:
 
     @property
     def overrides(self) -> list[str]:
+        """Settings of the user over the scenario, as ``a.b=v``."""
         values: list[str] = json.loads(self.metadata.get("overrides", "[]"))
         return values

@@ -14,8 +14,10 @@ from cosim.scenario.model import ScenarioModel
 
 
 def beside(run: RunData) -> dict[str, Any]:
-    """``{simulated, methods}``: peaks with their sign [N], breaking's share of the peak of Fx; per method the same, and
-    ``ratio_fx``, ``ratio_fz`` = simulated / design. ``refused`` in place of ``methods`` if the scenario cannot be read.
+    """``{simulated, methods}``: peaks with their sign [N], breaking's share of the peak of Fx; per method the same.
+
+    Methods have ``ratio_fx``, ``ratio_fz`` = simulated / design. ``refused`` stands in place of ``methods`` if the
+    scenario cannot be read.
     """
     simulated = simulated_load(run)
     try:

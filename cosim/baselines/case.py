@@ -70,4 +70,5 @@ class Method:
 
 
 def refuse(formula: str, what: str, remedy: str) -> BaselineError:
+    """The error of a formula that cannot be used: what is against it, and the remedy."""
     return BaselineError(f"{formula}: {what}; {remedy}")

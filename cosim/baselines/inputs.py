@@ -30,7 +30,7 @@ def given(model: ScenarioModel) -> Given:
     i, s, water = model.ice, model.structure, model.water
     wide = s.kind == "plane"
     width = float(model.sheet.width) if wide else 2.0 * s.waterline_radius
-    defaults = _defaults(model, width)
+    defaults = _defaults(model)
     stated = {key: getattr(model.baseline, key) for key in defaults}
     value: dict[str, Any] = {k: defaults[k][0] if v is None else v for k, v in stated.items()}
     case = Case(
@@ -59,7 +59,7 @@ def given(model: ScenarioModel) -> Given:
     return Given(case, {k: defaults[k][1] for k, v in stated.items() if v is None and defaults[k][1]})
 
 
-def _defaults(model: ScenarioModel, width: float) -> dict[str, tuple[Any, str]]:
+def _defaults(model: ScenarioModel) -> dict[str, tuple[Any, str]]:
     """Value and wording by key; no wording where the scenario says it elsewhere."""
     i, s, friction = model.ice, model.structure, model.rubble.friction_ice_ice
     slope = RUBBLE_SLOPE * s.slope

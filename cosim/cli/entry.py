@@ -22,8 +22,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     help="Ice loads on sloping structures: a lattice that breaks, coupled with rubble that slides.",
 )
-
-
 #: in the order of the help
 COMMANDS: dict[str, Callable[..., None]] = {
     "run": simulate.run,

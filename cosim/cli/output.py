@@ -20,7 +20,8 @@ def writable(path: Path) -> Path:
     return path
 
 
-def print_json(content: dict[str, Any]) -> None:
+def print_json(content: dict[str, Any] | list[dict[str, Any]]) -> None:
+    """One JSON object, or a list of them, on standard output; what is no number becomes null."""
     sys.stdout.write(json.dumps(_finite(content), indent=2, allow_nan=False) + "\n")
 
 

@@ -9,7 +9,8 @@ import typer
 
 from cosim.cli.options import JsonOption, ScenarioArgument, SetOption
 from cosim.cli.output import print_json, writable
-from cosim.errors import FailedError
+from cosim.errors import FailedError, InputError
+from cosim.verify.case import CaseResult
 
 
 def run(
@@ -85,6 +86,22 @@ def verify(
     as_json: JsonOption = False,
 ) -> None:
     """Check the parts against closed forms and the tables and figures of their sources."""
-    from cosim.verify.command import verify_command
+    from cosim.show.console import print_progress
+    from cosim.show.verify_table import print_verification
+    from cosim.verify.cases import run as run_cases
 
-    verify_command(case, settings, plots, quick, as_json)
+    def done(result: CaseResult, seconds: float) -> None:
+        if case is None:
+            print_progress(f"{result.case}: {'ok' if result.passed else 'FAILED'}, {seconds:.1f} s")
+
+    try:
+        results = run_cases(case, settings, plots, quick, done)
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    if as_json:
+        found = [result.as_dict() for result in results]
+        print_json(found if case is None else found[0])
+    else:
+        print_verification(results)
+    if failed := [result.case for result in results if not result.passed]:
+        raise FailedError(f"{len(failed)} of {len(results)} cases miss their reference: {', '.join(failed)}")

@@ -20,7 +20,7 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
     t_ns: list[int] = []
     loads: list[list[float]] = []
     events: list[Event] = []
-    books: dict[str, list[tuple[int, dict[str, float]]]] = {"/ledger": [], "/load/budget": []}
+    named: dict[str, list[tuple[int, dict[str, float]]]] = {"/ledger": [], "/load/budget": []}
     for topic, time, data in stored:
         if topic == "/load/structure":
             message = messages.Load.FromString(data)
@@ -28,9 +28,9 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
             loads.append([getattr(message, key) for key in messages.LOAD_FIELDS[3:]])
         elif topic == "/events":
             events.append(_event(time, messages.Event.FromString(data)))
-        elif topic in books:
+        elif topic in named:
             message = messages.Ledger.FromString(data)
-            books[topic].append((time, dict(zip(message.name, message.value, strict=True))))
+            named[topic].append((time, dict(zip(message.name, message.value, strict=True))))
     times = np.array(t_ns, np.int64)
     return RunData(
         name,
@@ -38,9 +38,9 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
         times,
         np.array(loads, float).reshape(-1, 3, 3),
         tuple(events),
-        _columns(times, books["/ledger"]),
+        _columns(times, named["/ledger"]),
         texts,
-        _columns(times, books["/load/budget"]),
+        _columns(times, named["/load/budget"]),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import mcap.writer
 from mcap.records import Attachment, Channel, McapRecord, Message, Metadata, Schema
@@ -21,14 +22,14 @@ def recover(path: str | Path, out: str | Path) -> RunData:
     if not len(data.t_ns):
         raise RecordingError(f"{source}: holds no data, nothing to recover; run the scenario again")
     with target.open("wb") as file:
-        writer = mcap.writer.Writer(file)
+        writer: Any = mcap.writer.Writer(file)  # its methods carry no types
         writer.start(profile="", library="cosim")
         _copy(records(source, until_damage=True), writer)
         writer.finish()
     return data
 
 
-def _copy(records: Iterator[McapRecord], writer: mcap.writer.Writer) -> None:
+def _copy(records: Iterator[McapRecord], writer: Any) -> None:
     schema: dict[int, int] = {}
     channel: dict[int, int] = {}
     for r in records:

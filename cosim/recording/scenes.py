@@ -27,6 +27,7 @@ _KINDS = {"f4": PackedElementField.FLOAT32, "u1": PackedElementField.UINT8, "u4"
 
 
 def as_bytes(message: Any) -> bytes:
+    """Serialised, the same bytes for the same content."""
     data: bytes = message.SerializeToString(deterministic=True)
     return data
 

@@ -18,8 +18,8 @@ def ice_colour(damage: Array, utilisation: Array) -> Array:
     """RGB 0-255 of sheet nodes: pale ice, blue, orange to red as utilisation goes to 1; cracked ice is dark."""
     u = np.clip(np.nan_to_num(utilisation), 0, 1)
     rgb = np.stack([np.interp(u, _STOPS, _RGB[:, k]) for k in range(3)], axis=1)
-    share = np.clip(damage, 0, 1)[:, None]
-    return rgb * (1 - share) + np.array(CRACKED_RGB) * share
+    dark = np.clip(damage, 0, 1)[:, None]
+    return rgb * (1 - dark) + np.array(CRACKED_RGB) * dark
 
 
 def cell_quads(intact: BoolArray, cell_shape: tuple[int, int]) -> IntArray:
@@ -41,6 +41,7 @@ def upward(quads: IntArray, position: Array) -> IntArray:
 
 
 def triangles(quads: IntArray) -> IntArray:
+    """(2 k, 3) triangles of quads: the first halves of all, then the second."""
     return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
 
 
@@ -49,7 +50,7 @@ def rim(quads: IntArray) -> IntArray:
     edges = np.concatenate([quads[:, [k, (k + 1) % 4]] for k in range(4)])
     key = np.sort(edges, axis=1)
     _, first, count = np.unique(key, axis=0, return_index=True, return_counts=True)
-    return edges[np.sort(first[count == 1])]
+    return np.asarray(edges[np.sort(first[count == 1])])
 
 
 def solid_sheet(position: Array, quads: IntArray, thickness: float) -> tuple[Array, IntArray, IntArray]:
@@ -103,8 +104,8 @@ def along_edges(points: Array, edges: IntArray, spacing: float) -> tuple[Array, 
     count = np.maximum(np.ceil(np.linalg.norm(b - a, axis=1) / spacing), 1).astype(np.int64)
     owner = np.repeat(np.arange(len(edges)), count)
     step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
-    share = (step / np.repeat(count, count))[:, None]
-    return a[owner] * (1 - share) + b[owner] * share, owner
+    along = (step / np.repeat(count, count))[:, None]
+    return a[owner] * (1 - along) + b[owner] * along, owner
 
 
 def prism_edges(blocks: BlockTable) -> tuple[IntArray, IntArray]:

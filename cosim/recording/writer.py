@@ -8,6 +8,8 @@ time, and nothing of the machine (clock, path, user) is written.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from importlib.metadata import version
 from pathlib import Path
 from typing import IO, Any, Self
 
@@ -15,50 +17,48 @@ import mcap.writer
 from mcap_protobuf.schema import build_file_descriptor_set
 
 from cosim.observer import RunInfo
-from cosim.recording import channels
-from coupling.interface import Frame
+from cosim.recording.channels import CHANNELS, Channel, When
+from coupling.interface import Event, Frame
 
-SHEET_EVERY = 4  #: recorded frames between two meshes of a sheet in which no cell fails
+MESH_EVERY = 4  #: recorded frames between two meshes of a sheet in which no cell fails
 
 
 class Recorder:
     """Observer that writes a run to ``path``. Closing is idempotent; use it in ``finally`` or as a context manager."""
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS) -> None:
         self.path = Path(path)
+        self._channels = channels
         self._file: IO[bytes] | None = None
-        self._channel: dict[str, int] = {}
-        self._count: dict[str, int] = {}
+        self._writer: Any = None  # its methods carry no types
+        self._number: dict[str, int] = {}  # of each channel in the file
+        self._count: dict[str, int] = {}  # of messages of each channel
 
     def on_start(self, run_info: RunInfo) -> None:
+        """Open the file and write all that holds for the whole run."""
         self._info = run_info
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
-        self._thickness = float(run_info.scenario.ice.thickness)
-        self._cells, self._since_sheet, self._due_ns = -1, 0, self._every_ns
+        self._cells, self._since_mesh, self._due_ns = -1, 0, self._every_ns
         self._file = self.path.open("wb")
         self._writer = mcap.writer.Writer(self._file)
         self._writer.start(profile="", library="cosim")
         self._write_run_data()
         self._register()
-        for packed in channels.structure(*run_info.structure_mesh, spacing=self._thickness / 3):
-            self._add(0, packed)
+        self._write(0, {When.WORLD})
+        self._write(0, {When.START})
         self._writer.flush()
 
     def on_frame(self, frame: Frame) -> None:
-        self._add(frame.t_ns, channels.load(frame.t_ns, frame.load))
-        if frame.ledger:
-            self._add(frame.t_ns, channels.ledger(frame.t_ns, frame.ledger))
-        if frame.budget:
-            self._add(frame.t_ns, channels.ledger(frame.t_ns, frame.budget, "/load/budget"))
+        """Write numbers of the window, its events, and pictures if they are due."""
+        self._write(frame.t_ns, {When.WINDOW}, frame)
         for event in frame.events:
-            for packed in channels.event(event):
-                self._add(event.t_ns, packed)
+            self._write(event.t_ns, {When.EVENT}, event)
         if self._is_recorded(frame):
-            for packed in channels.frame(frame, self._thickness, self._with_sheet(frame)):
-                self._add(frame.t_ns, packed)
+            self._write(frame.t_ns, {When.PICTURE, When.MESH} if self._with_mesh(frame) else {When.PICTURE}, frame)
             self._writer.flush()
 
     def on_close(self) -> None:
+        """Finish the file; what was written until now can be read."""
         if self._file is not None:
             self._writer.finish()
             self._file.close()
@@ -81,10 +81,10 @@ class Recorder:
             self._due_ns = (frame.t_ns // self._every_ns + 1) * self._every_ns
         return first or last or bool(frame.events) or due
 
-    def _with_sheet(self, frame: Frame) -> bool:
+    def _with_mesh(self, frame: Frame) -> bool:
         cells = int(frame.sheet.intact.sum())
-        due = cells != self._cells or self._since_sheet >= SHEET_EVERY - 1
-        self._cells, self._since_sheet = cells, 0 if due else self._since_sheet + 1
+        due = cells != self._cells or self._since_mesh >= MESH_EVERY - 1
+        self._cells, self._since_mesh = cells, 0 if due else self._since_mesh + 1
         return due
 
     def _write_run_data(self) -> None:
@@ -99,27 +99,29 @@ class Recorder:
     def _register(self) -> None:
         """All channels at once, in the order of the table, so that their numbers never depend on the run."""
         schemas: dict[str, int] = {}
-        for topic, message in channels.SCHEMAS.items():
-            name = message.DESCRIPTOR.full_name
+        for topic, channel in self._channels.items():
+            name = channel.schema.DESCRIPTOR.full_name
             if name not in schemas:
-                data = build_file_descriptor_set(message).SerializeToString(deterministic=True)
+                data = build_file_descriptor_set(channel.schema).SerializeToString(deterministic=True)
                 schemas[name] = self._writer.register_schema(name, "protobuf", data)
-            self._channel[topic] = self._writer.register_channel(topic, "protobuf", schemas[name])
+            self._number[topic] = self._writer.register_channel(topic, "protobuf", schemas[name])
 
-    def _add(self, t_ns: int, packed: channels.Packed) -> None:
-        topic, data = packed
-        self._count[topic] = self._count.get(topic, 0) + 1
-        self._writer.add_message(self._channel[topic], t_ns, data, t_ns, self._count[topic])
+    def _write(self, t_ns: int, when: set[When], *item: Frame | Event) -> None:
+        """One message of every channel that is due and has something to say."""
+        for topic, channel in self._channels.items():
+            data = channel.take(self._info, *item) if channel.when in when else None
+            if data is not None:
+                self._count[topic] = self._count.get(topic, 0) + 1
+                self._writer.add_message(self._number[topic], t_ns, data, t_ns, self._count[topic])
 
 
 def attach(writer: Any, name: str, text: str) -> None:
+    """A text that belongs to the run, as TOML."""
     writer.add_attachment(0, 0, name, "application/toml", text.encode())
 
 
 def run_metadata(info: RunInfo) -> dict[str, str]:
     """What identifies a run: strings, as MCAP wants them."""
-    from importlib.metadata import version
-
     scenario = info.scenario
     return {
         "format": "1",
@@ -130,7 +132,7 @@ def run_metadata(info: RunInfo) -> dict[str, str]:
         "overrides": json.dumps(list(scenario.overrides)),
         "nodes": json.dumps(list(info.sheet_shape)),
         "spacing_m": repr(float(info.d)),
-        "thickness_m": repr(float(scenario.ice.thickness)),
+        "thickness_m": repr(info.thickness),
         "drift_m_s": repr(float(scenario.drift.velocity)),
         "ice_density": repr(float(scenario.ice.density)),
         "duration_ns": str(info.duration_ns),

@@ -6,6 +6,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from cosim.scenario.names import Scheme
 from cosim.scenario.section import Section, fault
 from cosim.scenario.units import (
     Force,
@@ -19,7 +20,7 @@ class Coupling(Section):
     window: Time = 0.05  #: time window (macro step) [s]; with steering the first one
     #: serial-explicit: the sheet under the last forces, then the rubble; parallel-explicit: both with the last data;
     #: serial-implicit: windows are repeated until forces and motion agree
-    scheme: Literal["serial-explicit", "parallel-explicit", "serial-implicit"] = "serial-explicit"
+    scheme: Scheme = "serial-explicit"
     tolerance: float = Field(1e-3, gt=0, lt=1)  #: implicit: change of the forces, relative, that ends the iteration
     max_iterations: int = Field(30, ge=2)  #: implicit: of one window
     relaxation: float = Field(1.0, gt=0, le=1)  #: implicit: share of the change that is taken over before Aitken's own

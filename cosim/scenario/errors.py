@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
 from cosim.errors import InputError
+from cosim.nearest import nearest
 from cosim.scenario.units import Unit
 
 EXAMPLES = {
@@ -48,7 +48,7 @@ def _remedy(first: Any, location: list[str], model: type[BaseModel], raw: dict[s
             return f": unknown key; {_nearest(model, location)}"
         case "missing":
             return f" is missing; add {_example(model, location)}"
-        case "check" | "quantity":
+        case "check" | "quantity" | "name":
             return f"{shown}: {first['msg']}"
         case "literal_error":
             return f"{shown}: use one of {first['ctx']['expected']}"
@@ -93,14 +93,14 @@ def _keys(model: type[BaseModel], prefix: str = "") -> list[str]:
 
 
 def _nearest(model: type[BaseModel], location: list[str]) -> str:
-    """The known key that is meant most likely: a near one of this section, the same one of another section."""
+    """The known key that is meant most likely: the same one of another section, a near one of this section."""
     known = list(_section(model, location[:-1]).model_fields)
-    near = difflib.get_close_matches(location[-1], known, n=1, cutoff=0.6)
-    if near:
-        return f"did you mean {'.'.join([*location[:-1], near[0]])}?"
     elsewhere = [key for key in _keys(model) if key.split(".")[-1] == location[-1]]
     if elsewhere:
         return f"did you mean {elsewhere[0]}?"
+    near = nearest(location[-1], known)
+    if near:
+        return f"did you mean {'.'.join([*location[:-1], near])}?"
     return f"known here: {', '.join(known)}"
 
 

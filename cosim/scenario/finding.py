@@ -16,6 +16,7 @@ def find_scenarios(folders: Sequence[str | Path] = ()) -> list[Path]:
 
 
 def locate(path: str | Path) -> Path:
+    """The file of a scenario that is named by folder, file or name; ScenarioError if there is none."""
     file = Path(path)
     if not file.exists() and len(file.parts) == 1:
         file = next((p for p in find_scenarios() if p.name == file.name), file)

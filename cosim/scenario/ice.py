@@ -8,6 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from cosim.scenario.names import StiffnessSet
 from cosim.scenario.section import Coefficient, Section, fault
 from cosim.scenario.units import (
     Acceleration,
@@ -78,6 +79,8 @@ class Sheet(Section):
     length: Length  #: along x [m]
     width: Length  #: along y [m]
     nodes: NodeCounts  #: along x and y
+    #: of the springs between nodes: hrennikoff (3.18)-(3.26) or equations-matching (3.8)-(3.11), the same at nu = 1/3
+    stiffness: StiffnessSet = "hrennikoff"
     axis_from_side: LengthOrZero = None  #: structure's axis from the side edge y_min [m]; default half the width
     back: Literal["held", "roller", "free"]  #: in plane; a roller holds the ice along the drift, not across
     sides: Literal["held", "roller", "free"] = "free"  #: in plane; a roller holds the ice across the drift, not along

@@ -29,24 +29,31 @@ class Scenario:
 
     @property
     def title(self) -> str:
+        """For people."""
         return self.model.scenario.title
 
     @property
     def seed(self) -> int:
+        """Of every random number of the run."""
         return self.model.scenario.seed
 
     @property
     def duration_ns(self) -> int:
-        return round(self.model.scenario.duration * 1e9)
+        """Simulated time [ns]."""
+        duration: float = self.model.scenario.duration
+        return round(duration * 1e9)
 
     @property
     def window_ns(self) -> int:
-        return round(self.model.coupling.window * 1e9)
+        """Length of the first time window [ns]."""
+        window: float = self.model.coupling.window
+        return round(window * 1e9)
 
     @property
     def substeps(self) -> int:
         """Sub-steps of the rubble in one time window."""
-        return self.window_ns // round(self.model.rubble.substep * 1e9)
+        substep: float = self.model.rubble.substep
+        return self.window_ns // round(substep * 1e9)
 
     def resolved_toml(self) -> str:
         """The scenario as it ran: overrides applied, every default written out. Loads to the same model."""

@@ -11,8 +11,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 Share = Annotated[float, Field(ge=0, le=1)]
-
-
 Coefficient = Annotated[float, Field(ge=0)]
 
 
@@ -22,4 +20,6 @@ def fault(key: str, text: str) -> PydanticCustomError:
 
 
 class Section(BaseModel):
+    """A table of a scenario file."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)

@@ -7,6 +7,7 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
+from cosim.scenario.names import ContactModel
 from cosim.scenario.section import Coefficient, Section, fault
 from cosim.scenario.units import (
     Angle,
@@ -50,6 +51,6 @@ class Structure(Section):
 class Contact(Section):
     """[contact] Sheet against structure."""
 
-    model: Literal["overlap", "crushing"] = "overlap"  #: the thesis's contact of 6.2, or ice that crushes
+    model: ContactModel = "overlap"  #: the thesis's contact of 6.2, or ice that crushes
     strength: Stress  #: overlap: "purely artificial" parameter of the thesis; crushing: strength of the ice [Pa]
     friction: Coefficient  #: sheet against structure

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 from pydantic import BaseModel
@@ -20,11 +21,11 @@ def complete(raw: dict[str, Any], model: BaseModel) -> dict[str, Any]:
         elif name in raw:
             table[name] = raw[name]
         elif value is not None:
-            table[name] = _with_unit(value, info.annotation, list(info.metadata))
+            table[name] = _with_unit(value, info.metadata)
     return table
 
 
-def _with_unit(value: Any, annotation: Any, metadata: list[Any]) -> Any:
+def _with_unit(value: Any, metadata: Sequence[Any]) -> Any:
     unit = next((m for m in metadata if isinstance(m, Unit)), None)
     return value if unit is None else f"{value!r} {unit.si}"
 

@@ -20,6 +20,7 @@ def compare_cells(row: Row) -> tuple[str, ...]:
 
 
 def number(value: float | None, factor: float) -> str:
+    """A number times ``factor`` with two decimals; a dash for none."""
     return "-" if value is None else f"{value * factor:.2f}"
 
 

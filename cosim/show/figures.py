@@ -11,16 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cosim.analysis.run_data import RunData
+from cosim.show import budget_figure
 from coupling.energy import LIMIT
 from coupling.interface import PHASES, Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-from cosim.show import budget_figure
 
 COLOURS = {"breaking": "#2f7ebc", "rotating": "#e6812b", "sliding": "#3a9b5c"}
-
-
 #: where energy is or went: terms of `coupling.energy` that belong together, and their colour
 ENERGY = {
     "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),
@@ -52,13 +50,11 @@ ENERGY = {
     "interface, step, overlap": ("#d45087", ("interface_loss", "stepping_loss", "correction_loss")),
     "side push of the sections": ("#b03a2e", ("side_push_loss",)),
 }
-
-
 ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
 
 
 def has_data(title: str, run: RunData) -> bool:
-    """Whether a figure has something to show: a recording may hold no energy books and no force budget."""
+    """Whether a figure has something to show: a recording may hold no energy balance and no force budget."""
     needs = {"drift": "drift_work" in run.ledger, "carries": bool(run.budget)}
     return all(there for word, there in needs.items() if word in title)
 
@@ -113,7 +109,7 @@ def draw_energy(figure: Figure, run: RunData) -> None:
 
 def energy_group(run: RunData, names: Sequence[str]) -> Array:
     """Sum of those terms that the run has, (windows,) [J]."""
-    return np.sum([run.ledger[n] for n in names if n in run.ledger] or [np.zeros(len(run.t))], axis=0)
+    return np.asarray(np.sum([run.ledger[n] for n in names if n in run.ledger] or [np.zeros(len(run.t))], axis=0))
 
 
 FIGURES: dict[str, Callable[[Any, RunData], None]] = {

@@ -48,6 +48,7 @@ def meshes(stored: Iterable[Stored], thickness: float) -> Iterator[Mesh]:
 
 
 def node_records(data: bytes) -> Any:
+    """Records of `cosim.recording.scenes.NODE` in a message of ``/ice/nodes``."""
     return np.frombuffer(PointCloud.FromString(data).data, scenes.NODE)
 
 

@@ -30,12 +30,14 @@ class ProgressBar:
         self._task: TaskID | None = None
 
     def on_start(self, run_info: RunInfo) -> None:
+        """Show the bar."""
         self._duration = run_info.duration_ns / NS
         self._begin = time.monotonic()
         self._task = self._progress.add_task(run_info.scenario.title, total=self._duration, now="", rate="")
         self._progress.start()
 
     def on_frame(self, frame: Frame) -> None:
+        """Move the bar to the end of the window; a line for each kind of event."""
         if self._task is None:
             return
         t = frame.t_ns / NS
@@ -47,6 +49,7 @@ class ProgressBar:
             self._progress.console.print(line, highlight=False, markup=False, soft_wrap=True)
 
     def on_close(self) -> None:
+        """Take the bar away."""
         self._progress.stop()
 
 

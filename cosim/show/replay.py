@@ -24,8 +24,6 @@ from cosim.show.viewer import headless_viewer, wait_until_loaded
 from coupling.interface import NS, PHASES, Phase
 
 APPLICATION = "cosim"
-
-
 TOTAL_RGB = (235, 235, 235)
 
 
@@ -57,11 +55,11 @@ def serve(recording: Path) -> None:
 
 
 def screenshot(
-    recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050), settle: float = 6.0
+    recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050), fade: float = 6.0
 ) -> list[str]:
     """Write a picture at a simulated time [s], default the end; returns what the views complain about.
 
-    ``settle`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
+    ``fade`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
     """
     run = read_run(recording)
     at = float(run.t[-1]) if at is None else at
@@ -73,7 +71,7 @@ def screenshot(
             send(stream, recording, run)
         wait_until_loaded(client, run)
         client.set_time(TIMELINE, duration=at, play_state="paused")
-        time.sleep(settle)
+        time.sleep(fade)
         out.write_bytes(client.take_screenshot())
         return [str(report) for view in client.get_state().views for report in view.reports]
 

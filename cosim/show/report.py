@@ -20,11 +20,11 @@ from cosim.baselines.beside import beside
 from cosim.errors import FailedError
 from cosim.show.baseline_cells import BESIDE, beside_rows, remarks
 from cosim.show.cells import compare_cells
+from cosim.show.figures import FIGURES, has_data
 from coupling.interface import NS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-from cosim.show.figures import FIGURES, has_data
 
 
 def write_report(run: RunData, out: Path) -> None:

@@ -6,7 +6,7 @@ import socket
 import subprocess
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +15,17 @@ from cosim.errors import FailedError
 from cosim.show.layout import TIMELINE
 
 NO_DRIVER = (
-    "the viewer found no Vulkan driver for a picture without screen; "
+    "the viewer ended by itself (exit code {code}): a picture without screen needs a Vulkan driver; "
     "install one, on Debian: apt-get install mesa-vulkan-drivers"
 )
 
 
 @contextmanager
 def headless_viewer(size: tuple[int, int]) -> Iterator[tuple[str, Any]]:
-    """A viewer without screen that listens on this machine only; ended on the way out."""
+    """A viewer without screen that listens on this machine only; ended on the way out.
+
+    It answers before it draws its first picture, and ends there if it has no driver: then whatever asks it next fails.
+    """
     import rerun_cli
     from rerun.experimental import ViewerClient
 
@@ -48,16 +51,27 @@ def headless_viewer(size: tuple[int, int]) -> Iterator[tuple[str, Any]]:
     url = f"rerun+http://127.0.0.1:{port}/proxy"
     try:
         yield url, _connect(ViewerClient, url, process)
+    except Exception as error:
+        if (code := _exit_code(process)) is None or isinstance(error, FailedError):
+            raise
+        raise FailedError(NO_DRIVER.format(code=code)) from error
     finally:
         process.terminate()
         process.wait(timeout=10)
+
+
+def _exit_code(process: subprocess.Popen[bytes], patience: float = 2.0) -> int | None:
+    """Of a viewer that has ended, or does so within ``patience`` [s]."""
+    with suppress(subprocess.TimeoutExpired):
+        return process.wait(timeout=patience)
+    return None
 
 
 def _connect(client_class: Any, url: str, process: subprocess.Popen[bytes], patience: float = 30.0) -> Any:
     until = time.monotonic() + patience
     while time.monotonic() < until:
         if process.poll() is not None:
-            raise FailedError(NO_DRIVER)
+            raise FailedError(NO_DRIVER.format(code=process.returncode))
         try:
             client = client_class.connect(url)
             client.get_state()
@@ -68,6 +82,7 @@ def _connect(client_class: Any, url: str, process: subprocess.Popen[bytes], pati
 
 
 def wait_until_loaded(client: Any, run: RunData, patience: float = 120.0) -> None:
+    """Return when the viewer has all of a run and shows it; FailedError after ``patience`` [s]."""
     until = time.monotonic() + patience
     while time.monotonic() < until:
         state = client.get_state()

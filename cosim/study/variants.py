@@ -31,10 +31,12 @@ class Variant:
 
     @property
     def name(self) -> str:
+        """For tables and messages."""
         return ", ".join(f"{key} = {value}" for key, value in self.changes) or "base"
 
     @property
     def overrides(self) -> tuple[str, ...]:
+        """Its changes as the command line takes them, ``a.b=v``."""
         return tuple(f"{key}={value}" for key, value in self.changes)
 
 

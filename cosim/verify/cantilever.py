@@ -46,10 +46,12 @@ FAILURE_LOAD = 1900.0  #: Table 4-4 [N]
 
 
 def ice_of(p: dict[str, Any]) -> Ice:
+    """Ice of the beams of chapter 4."""
     return Ice(E=p["E"], nu=p["nu"], h=p["h"], rho_i=p["rho_i"], rho_w=p["rho_w"])
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Root states and failure loads of the three tables, and the beam that fails in motion."""
     known = {**p, "dynamic": True, "dt": 0.0} == PARAMETERS
     figures = [_figure_17(p)]
     quantities = _table_4_2(p, known)

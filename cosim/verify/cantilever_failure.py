@@ -69,6 +69,8 @@ def _centre_line(moving: MovingPiece) -> Array:
 
 
 def figure_18(times: Array, deflection: Array, failed: float) -> Figure:
+    """Deflection of the tip over time [s], [m]; ``failed`` is the time of the first failure [s]."""
+
     def draw(figure: Any) -> None:
         axes = figure.subplots()
         for i, point in enumerate(POINTS):

@@ -34,6 +34,8 @@ class Figure:
 
 @dataclass(frozen=True)
 class CaseResult:
+    """What a case came to."""
+
     case: str
     parameters: dict[str, Any]
     quantities: list[Quantity]

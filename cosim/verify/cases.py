@@ -5,11 +5,13 @@ A case is a module with ``PARAMETERS`` and ``run(parameters, quick) -> CaseResul
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from cosim.nearest import hint
 from cosim.verify import (
     cantilever,
     cone,
@@ -31,10 +33,8 @@ from cosim.verify import (
     terminal_velocity,
     wedge,
 )
-from cosim.verify.case import CaseResult, Figure, Quantity
+from cosim.verify.case import CaseResult
 from cosim.verify.settings import merged, parse
-
-__all__ = ["CASES", "CaseResult", "Figure", "Quantity", "run", "save_figures"]
 
 CASES: dict[str, ModuleType] = {
     "eigenfrequencies": eigenfrequencies,
@@ -64,19 +64,24 @@ def run(
     settings: Mapping[str, Any] | Iterable[str] | None = None,
     plots_dir: str | Path | None = None,
     quick: bool = False,
+    done: Callable[[CaseResult, float], None] = lambda _result, _seconds: None,
 ) -> list[CaseResult]:
-    """Run one case, or all; ``settings`` need a case. ValueError with one line for anything that cannot be run."""
+    """Run one case, or all; ``settings`` need a case. ValueError with one line for anything that cannot be run.
+
+    ``done`` is called after each case with the wall time that it took [s].
+    """
     changes = parse(settings)
     if case is None and changes:
         raise ValueError("--set needs a case: parameters belong to one case")
     if case is not None and case not in CASES:
-        raise ValueError(f"unknown case {case!r}: known cases are {', '.join(CASES)}")
+        raise ValueError(f"unknown case {case!r}; {hint(case, CASES)}")
     results = []
     for name in CASES if case is None else [case]:
-        module = CASES[name]
+        module, began = CASES[name], time.perf_counter()
         results.append(module.run(merged(name, module.PARAMETERS, changes), quick))
         if plots_dir is not None:
             save_figures(results[-1], Path(plots_dir))
+        done(results[-1], time.perf_counter() - began)
     return results
 
 

@@ -108,15 +108,16 @@ def _statics(
     return np.asarray(load @ m / (contact @ m) * contact)
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Force of a block at every ``y`` and speed ``across``, measured and by statics."""
     if not max(abs(y) for y in p["y"]) <= 0.85:
         raise ValueError("cone: y is a share of the radius, at most 0.85: the block stands 1.5 m below water")
     quantities = []
-    for share in p["y"]:
+    for y in p["y"]:
         for across in p["across"]:
-            measured, exact = slide(p, share * p["radius"], across)
+            measured, exact = slide(p, y * p["radius"], across)
             error = np.abs(measured - exact).max() / np.linalg.norm(exact)
-            name = f"y = {share:g} R, sideways at {across:g} m/s: "
+            name = f"y = {y:g} R, sideways at {across:g} m/s: "
             quantities += [
                 near(f"{name}Fx, Fz", measured[[0, 2]], "N", exact[[0, 2]], 0.01, SOURCE),
                 near(f"{name}Fy", measured[1], "N", exact[1], 0.01, SOURCE),

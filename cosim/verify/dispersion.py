@@ -26,7 +26,8 @@ CONTOURS = ((1.0, (500.0, 1000.0, 2000.0), "2-10"), (1.0, (3000.0,), "2-11"))  #
 MESHES = (5.0, 66.0)  #: omega of Figure 2-18 [rad/s]
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Wave speeds of lattice and plate, and their difference for long waves."""
     ice, kd = ice_of(p), np.linspace(0.01, np.pi, 60)
     quantities = [value("k_x d", kd, "-")]
     curves = {}

@@ -109,7 +109,8 @@ LATTICE = {
 }
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Eigenfrequencies of both lattices of Table 2-2 and of the plate, and the order of convergence."""
     ice, modes = ice_of(p), int(p["modes"])
     known = is_table_2_1(p) and 1 <= modes <= 20
     quantities = [value("continuum", continuum.eigenfrequencies(ice, p["Lx"], p["Ly"], modes), "Hz")]

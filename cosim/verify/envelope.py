@@ -60,6 +60,7 @@ def radius(p: dict[str, Any], direction: Array, alpha: float, in_plane: bool = T
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Envelopes in plane and out of plane, and how far they depend on the direction; ``quick``: fewer of them."""
     count = 72 if quick else int(p["directions"])
     theta = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False) + 1e-3  # off the axes: no tie between criteria
     directions = np.column_stack((np.cos(theta), np.sin(theta)))

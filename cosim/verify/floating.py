@@ -70,16 +70,17 @@ def mean_height(p: dict[str, Any], draft: float, heave: float, substeps: int) ->
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Draft, heave and pitch; ``quick``: fewer periods."""
     draft, area = p["h"] * p["rho_i"] / p["rho_w"], p["length"] * p["width"]
     if not p["rho_i"] < p["rho_w"] or not min(p["length"], p["h"], p["width"]) > 0.0:
         raise ValueError("float: the block must have length, h, width > 0 and float, rho_i < rho_w")
     mass, volume = p["rho_i"] * area * p["h"], area * draft
-    share = p["rho_w"] / p["rho_i"]
-    heave = 2.0 * pi * sqrt(mass * (1.0 + p["added_mass"] * share) / (p["rho_w"] * p["g"] * area))
+    displaced = p["rho_w"] / p["rho_i"]
+    heave = 2.0 * pi * sqrt(mass * (1.0 + p["added_mass"] * displaced) / (p["rho_w"] * p["g"] * area))
     gm = p["length"] ** 2 / (12.0 * draft) + draft / 2.0 - p["h"] / 2.0
     if gm <= 0.0:
         raise ValueError(f"float: a block {p['length']:g} m long and {p['h']:g} m thick turns over; make it longer")
-    inertia = mass * (p["length"] ** 2 + p["h"] ** 2) / 12.0 * (1.0 + p["added_inertia"] * share)
+    inertia = mass * (p["length"] ** 2 + p["h"] ** 2) / 12.0 * (1.0 + p["added_inertia"] * displaced)
     pitch = 2.0 * pi * sqrt(inertia / (p["rho_w"] * p["g"] * volume * gm))
     count = 5 if quick else int(p["periods"])
     rest = mean_height(p, draft, heave, 10_000 if quick else 40_000)

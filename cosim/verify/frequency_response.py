@@ -33,14 +33,15 @@ def lattice_curve(p: dict[str, Any], nodes: tuple[int, int], f: Array, c: float 
     """Amplitudes (w, phi_x) at the load over the static ones, complex (frequencies, 2)."""
     plate = plate_of(p, nodes)
     out = spectrum.response(plate, load_node(p, plate.grid), _omega(f), c * _scale(p), alpha)[:, :2]
-    return out[1:] / out[0]
+    return np.asarray(out[1:] / out[0])
 
 
 def navier_curve(p: dict[str, Any], f: Array, c: float = 0.0, alpha: float = 0.0) -> Array:
+    """Response of the continuum plate at frequencies ``f`` [Hz], complex: deflection and rotation, (2, f)."""
     at = np.array([p["load"]])
     sides = p["Lx"], p["Ly"]
     out = continuum.navier(ice_of(p), sides, tuple(p["load"]), at, _omega(f), c * _scale(p), alpha)[:, 0, :2]
-    return out[1:] / out[0]
+    return np.asarray(out[1:] / out[0])
 
 
 def _omega(f: Array) -> Array:
@@ -53,6 +54,7 @@ def _scale(p: dict[str, Any]) -> float:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Response of lattice and plate over frequency; ``quick``: fewer frequencies."""
     mesh = meshes(p["nodes"])
     standard = p == {**PARAMETERS, "points": p["points"], "f_max": p["f_max"]}
     f = np.linspace(0.05, p["f_max"], 40 if quick else int(p["points"]))

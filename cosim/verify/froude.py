@@ -65,7 +65,8 @@ def simulate(p: dict[str, Any], scale: float) -> tuple[Array, Array, Array]:
     return np.array(shape), np.array(strain), np.array(broken, dtype=float)
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Both scales run, and the largest difference of their dimensionless results."""
     if not p["lambda"] > 0.0:
         raise ValueError(f"scale lambda = {p['lambda']:g} must be greater than 0")
     small, large = simulate(p, 1.0 / p["lambda"]), simulate(p, 1.0)

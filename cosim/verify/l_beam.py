@@ -41,7 +41,8 @@ def utilisation(state: CellState, ice: Ice) -> Array:
     return np.maximum(bending_top(state, ice), bending_bottom(state, ice))
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """States of the first row under the three loads, and which cells are beyond their strength."""
     ice = Ice(
         E=p["E"],
         nu=p["nu"],
@@ -83,7 +84,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
 
 def _across(p: dict[str, Any], cells: int) -> Array:
     """Centres of the cells across the root; positive on the side to which the L turns [m]."""
-    return (np.arange(cells) + 0.5) * p["d"] - 0.5 * p["width"]
+    return np.asarray((np.arange(cells) + 0.5) * p["d"] - 0.5 * p["width"])
 
 
 def _field(piece: Piece, q: Array, ice: Ice) -> Array:

@@ -24,7 +24,7 @@ def envelope(ice: Ice, mean: Array, limit: float) -> Array:
 
 def compressive_limit(ice: Ice, mean: Array) -> Array:
     """Radius times E at which (4.5) is reached [Pa]."""
-    return (INTERCEPT * ice.sigma_c - SLOPE * mean) / (np.sin(2.0 * BETA) + SLOPE * np.cos(2.0 * BETA))
+    return np.asarray((INTERCEPT * ice.sigma_c - SLOPE * mean) / (np.sin(2.0 * BETA) + SLOPE * np.cos(2.0 * BETA)))
 
 
 def mohr_figure(floe: str, number: str, record: Record) -> Figure:

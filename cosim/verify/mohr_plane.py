@@ -54,6 +54,7 @@ ON_LINE = 1e-4  #: of the utilisation of a located failure against 1
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """States of the floes until their first large failure; ``quick``: one floe, coarse."""
     if p["floe"] not in ("all", *FLOES):
         raise ValueError(f"mohr-plane: floe = {p['floe']} is unknown; known: all, {', '.join(FLOES)}")
     chosen = list(FLOES) if p["floe"] == "all" else [p["floe"]]

@@ -119,7 +119,7 @@ class Record:
     @property
     def share(self) -> Array:
         """Share of all states, cells and windows, in T-T, T-C and C-C, (3,)."""
-        return self._count / self._count.sum()
+        return np.asarray(self._count / self._count.sum())
 
     def failing(self, located: bool) -> Array:
         """Utilisation of the failing cells against their own limits."""

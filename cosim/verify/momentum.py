@@ -30,6 +30,7 @@ A, B = (2.0, 2.0), (3.0, 4.0)  #: extents of the two blocks [m]
 
 
 def box(size: tuple[float, float]) -> Array:
+    """(4, 2) corners of a box around the origin."""
     x, z = size[0] / 2.0, size[1] / 2.0
     return np.array([(-x, -z), (x, -z), (x, z), (-x, z)])
 
@@ -77,8 +78,9 @@ def _motion(layer: RubbleLayer) -> Array:
 
 
 def impact(p: dict[str, Any], before: Array, r: Array, inertia: bool) -> Array:
-    """Velocities after a one-point impact on a face with normal +x: e along it, friction mu against the slip that is
-    left across.
+    """Velocities after a one-point impact on a face with normal +x.
+
+    Restitution e acts along it, friction mu against the slip that is left across.
     """
     mass = p["rho_i"] * np.array([A[0] * A[1], B[0] * B[1]])
     moment = mass * np.array([A[0] ** 2 + A[1] ** 2, B[0] ** 2 + B[1] ** 2]) / 12.0
@@ -95,16 +97,17 @@ def impact(p: dict[str, Any], before: Array, r: Array, inertia: bool) -> Array:
         sign = np.sign(j[1])
         j[0] = -(1.0 + p["e"]) * u[0] / (k[0, 0] + k[0, 1] * sign * p["mu"])
         j[1] = sign * p["mu"] * j[0]
-    return (before.ravel() + jacobian.T @ j / m).reshape(2, 3)
+    return np.asarray((before.ravel() + jacobian.T @ j / m).reshape(2, 3))
 
 
 def pile_balance(p: dict[str, Any], substeps: int) -> tuple[float, float]:
-    """Momentum gained less impulses received over a run, and the same with the structure's impulse reversed; both as
-    part of the impulse that passed through the blocks.
+    """Momentum gained less impulses received over a run, and the same with the structure's impulse reversed.
+
+    Both as part of the impulse that passed through the blocks.
     """
     physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], thickness=3.0, added_mass=0.2, restitution=p["e"])
     face = np.array([(30.0, -30.0), (-5.0, 5.0)])
-    layer = RubbleLayer(physics, 3.0, solids=lambda y: plane(convex_parts(face, back=60.0)))
+    layer = RubbleLayer(physics, 3.0, solids=lambda _: plane(convex_parts(face, back=60.0)))
     for i in range(12):
         x, z = -4.0 - 5.0 * (i % 4), -4.0 - 4.0 * (i // 4)
         layer.add_block(
@@ -130,10 +133,11 @@ def pile_balance(p: dict[str, Any], substeps: int) -> tuple[float, float]:
 
 
 def _carried(layer: RubbleLayer) -> Array:
-    return np.sum([b.body.mass * np.array(b.body.velocity) for b in layer.blocks], axis=0)
+    return np.asarray(np.sum([b.body.mass * np.array(b.body.velocity) for b in layer.blocks], axis=0))
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Velocities after impacts, and the balance of a pile with its twin; ``quick``: fewer sub-steps."""
     if not 0.0 <= p["e"] <= 1.0 or not p["mu"] >= 0.0 or not p["v"] > 0.0 or not 0.0 < abs(p["turned"]) < 45.0:
         raise ValueError("momentum: give 0 <= e <= 1, mu >= 0, v > 0 and a turn between 0 and 45 degrees")
     head, head_after, arms = collide({**p, "mu": 0.0}, 0.0, 0.0)

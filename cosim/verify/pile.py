@@ -40,6 +40,7 @@ def bin_of(width: float) -> list[Array]:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Force on the bin and rest of the pile; ``quick``: 60 s."""
     physics = RubblePhysics(
         rho_i=p["rho_i"],
         rho_w=p["rho_w"],
@@ -49,7 +50,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
         form_drag=5.0,
         thickness=p["h"],
     )
-    layer = RubbleLayer(physics, p["width"], solids=lambda y: plane(bin_of(10.0)))
+    layer = RubbleLayer(physics, p["width"], solids=lambda _: plane(bin_of(10.0)))
     random, size = np.random.default_rng(int(p["seed"])), np.array([p["length"], p["h"]])
     outline = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * size / 2.0
     for i in range(int(p["blocks"])):

@@ -24,6 +24,7 @@ TABLE_2_1: dict[str, Any] = {
 
 
 def ice_of(p: dict[str, Any]) -> Ice:
+    """Ice of Table 2-1."""
     return Ice(E=p["E"], nu=p["nu"], h=p["h"], rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"])
 
 
@@ -52,4 +53,5 @@ def load_node(p: dict[str, Any], grid: Grid) -> int:
 
 
 def is_table_2_1(p: dict[str, Any]) -> bool:
+    """Whether the parameters are those of the thesis, for which there are references."""
     return all(p[key] == standard for key, standard in TABLE_2_1.items())

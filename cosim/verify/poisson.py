@@ -41,6 +41,7 @@ def contraction(ice: Ice, stiffness: str) -> float:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Contraction of one cell and response of the plate with each stiffness set; ``quick``: fewer frequencies."""
     quantities = _cells(p)
     sets = {name: {**p, "stiffness": name} for name in STIFFNESS_SETS}
     mesh = meshes(p["nodes"])[0]

@@ -35,7 +35,7 @@ def pushed(p: dict[str, Any], count: int, seconds: float) -> Array:
         rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"], thickness=p["h"], iterations=int(p["iterations"])
     )
     wall = np.array([(0.0, -30.0), (10.0, -30.0), (10.0, 30.0), (0.0, 30.0)])
-    layer = RubbleLayer(physics, p["width"], solids=lambda y: plane([wall]))
+    layer = RubbleLayer(physics, p["width"], solids=lambda _: plane([wall]))
     low, a = -p["h"] * p["rho_i"] / p["rho_w"], p["length"]
     for i in range(count):
         x = -a * i
@@ -56,6 +56,7 @@ def settling_time(force: Array, expected: float, window: float) -> float:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Force that rows of blocks pass on; ``quick``: two rows, 20 s."""
     if not p["force"] > 0.0 or not min(p["blocks"]) >= 1:
         raise ValueError("pusher: give a force > 0 and rows of one block or more")
     quantities: list[Quantity] = []

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import math
 from collections.abc import Iterable, Mapping
 from typing import Any
+
+from cosim.nearest import hint
 
 
 def parse(settings: Mapping[str, Any] | Iterable[str] | None) -> dict[str, Any]:
@@ -35,9 +36,7 @@ def merged(case: str, defaults: Mapping[str, Any], changes: Mapping[str, Any]) -
     """Defaults with the user's changes; a key that the case does not know or a value of another kind is refused."""
     for key, new in changes.items():
         if key not in defaults:
-            close = difflib.get_close_matches(key, defaults, 1)
-            hint = f"did you mean {close[0]}?" if close else f"known: {', '.join(defaults)}"
-            raise ValueError(f"{case} has no parameter {key}: {hint}")
+            raise ValueError(f"{case} has no parameter {key}: {hint(key, defaults)}")
         if not _fits(new, defaults[key]):
             raise ValueError(
                 f"{case}: {key} = {json.dumps(new)} must be a {_kind(defaults[key])}, "

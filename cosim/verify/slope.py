@@ -75,6 +75,7 @@ def threshold(p: dict[str, Any], mu: float, wet: bool, width: float) -> float:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Threshold, rest below it and acceleration above it; ``quick``: a wider bracket of the threshold."""
     quantities: list[Quantity] = []
     for mu in p["mu"]:
         for wet in (False, True):

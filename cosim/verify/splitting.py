@@ -57,6 +57,7 @@ def critical(p: dict[str, Any], cells: int, cut: int) -> tuple[float, Array]:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Load at which the crack runs and its opening; ``quick``: a coarser exact solution."""
     cells = int(p["cells"])
     cut = round(p["a"] / p["L"] * cells)
     EdgeCrack(_ice(p, p["L"] / cells), p["L"], cells, cut)  # refuses a crack that leaves the plate
@@ -70,7 +71,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
         value("time of Figure 4-14", history[:, 0], "s"),
         value("CMOD, COD, CTOD of Figure 4-14", history[:, 1:].T, "m"),
     ]
-    return CaseResult("splitting", p, quantities, [_figure_13(normalised, cells), _figure_14(history)])
+    return CaseResult("splitting", p, quantities, [_figure_13(normalised), _figure_14(history)])
 
 
 def _resolute(p: dict[str, Any], force: float, opening: Array, cut: int, known: bool) -> list[Quantity]:
@@ -135,7 +136,7 @@ def _history(p: dict[str, Any], cells: int, cut: int, force: float) -> Array:
     return np.array(rows)
 
 
-def _figure_13(curves: dict[str, Array], cells: int) -> Figure:
+def _figure_13(curves: dict[str, Array]) -> Figure:
     def draw(figure: Any) -> None:
         axes = figure.subplots()
         fine = np.linspace(0.08, 0.82, 75)

@@ -16,7 +16,8 @@ from lattice.grid import Array
 PARAMETERS: dict[str, Any] = {**TABLE_2_1, "nodes": [31, 51], "load": [20.0, 50.0], "F": 10.0e3}
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Deflection under the load, lattice and plate."""
     plate = plate_of(p, meshes(p["nodes"])[0])
     node, grid = load_node(p, plate.grid), plate.grid
     force = np.zeros(len(plate.dof))

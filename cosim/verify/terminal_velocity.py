@@ -50,7 +50,8 @@ def speed(p: dict[str, Any], rho: float) -> float:
         last = now
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
+def run(p: dict[str, Any], _quick: bool) -> CaseResult:
+    """Speed of a rising and of a sinking block."""
     quantities: list[Quantity] = []
     for rho in p["rho"]:
         if rho == p["rho_w"] or not p["C_d"] > 0.0:

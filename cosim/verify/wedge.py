@@ -116,6 +116,7 @@ def at_angles(p: dict[str, Any], phi: Array, force: Array) -> tuple[list[float],
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Loads over the way of the wedge against (6.2)-(6.5); ``quick``: twice as fast, half the strips."""
     if p["geometry"] not in ("plate", "block"):
         raise ValueError(f'wedge: geometry = {p["geometry"]!r} must be "plate" (as the thesis) or "block"')
     if not 0.0 < p["slope"] < 90.0 or min(p["degrees"]) <= 0.0 or not p["speed"] > 0.0:

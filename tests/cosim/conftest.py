@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from cosim.recording.channels import CHANNELS
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 
@@ -28,9 +29,9 @@ def synthetic():
 def record(synthetic):
     """record(path, overrides) writes a synthetic run and returns the path."""
 
-    def write(path, overrides=SHORT, stop_after=None):
+    def write(path, overrides=SHORT, stop_after=None, channels=CHANNELS):
         scenario = load_scenario("van_vliet_2018_floe_165m", overrides)
-        recorder = Recorder(path)
+        recorder = Recorder(path, channels)
         try:
             recorder.on_start(synthetic.run_info(scenario))
             for k, frame in enumerate(synthetic.frames(scenario)):

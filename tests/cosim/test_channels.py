@@ -5,10 +5,13 @@ import pytest
 from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from cosim.recording import channels, messages, scenes, shapes
+from cosim.recording import messages, numbers, scenes, shapes, views
+from cosim.recording.channels import CHANNELS, Channel, When
+from cosim.recording.reader import messages as stored
+from cosim.recording.reader import read_run
 from cosim.scenario.loading import load_scenario
 from cosim.show import pictures
-from coupling.interface import BlockTable, Event
+from coupling.interface import BlockTable, Event, Frame, SheetView
 
 
 @pytest.fixture(scope="module")
@@ -31,37 +34,77 @@ def test_triangles_are_read_back_bit_by_bit():
 
 def test_nested_messages_are_set_also_at_zero(scenario, synthetic):
     """rerun turns an unset nested message into a null."""
-    (entity,) = SceneUpdate.FromString(channels.rubble_scene(0, BlockTable.empty())).entities
+    (entity,) = SceneUpdate.FromString(views.prisms(0, BlockTable.empty())).entities
     assert entity.HasField("timestamp")
     assert entity.HasField("lifetime")
     assert all(item.HasField("pose") and item.HasField("color") for item in entity.triangles)
-    cloud = PointCloud.FromString(channels.nodes(0, synthetic.sheet(scenario, 0.0)))
+    cloud = PointCloud.FromString(views.nodes(0, synthetic.sheet(scenario, 0.0)))
     assert cloud.HasField("timestamp")
     assert cloud.HasField("pose")
     assert cloud.pose.HasField("position")
 
 
+def window(t_ns, **content):
+    """A frame without ice."""
+    none = SheetView(np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0, bool), np.empty(0, bool), (0, 0), (0, 0))
+    return Frame(t_ns, none, BlockTable.empty(), **{"load": np.zeros((3, 3)), **content})
+
+
 def test_load_holds_totals_and_phases():
-    by_phase = np.arange(9.0).reshape(3, 3) + 1
-    topic, data = channels.load(2_000_000_001, by_phase)
+    data = numbers.load(None, window(2_000_000_001, load=np.arange(9.0).reshape(3, 3) + 1))
     message = messages.Load.FromString(data)
-    assert (topic, message.stamp.seconds, message.stamp.nanos) == ("/load/structure", 2, 1)
+    assert (message.stamp.seconds, message.stamp.nanos) == (2, 1)
     assert (message.fx, message.fy, message.fz) == (12.0, 15.0, 18.0)
     assert (message.breaking_fx, message.rotating_fy, message.sliding_fz) == (1.0, 5.0, 9.0)
 
 
 def test_an_event_is_data_and_a_line():
     item = Event(10**9, "split", (1.0, 2.0, 3.0), 7, (4.0, 5.0, 6.0), "two parts")
-    (first, data), (second, line) = channels.event(item)
-    message = messages.Event.FromString(data)
-    assert (first, message.kind, message.fz, message.cells, message.y) == ("/events", "split", 3.0, 7, 5.0)
-    assert second == "/log"
-    assert channels.SCHEMAS["/log"].FromString(line).message == "split: two parts"
+    message = messages.Event.FromString(numbers.event(None, item))
+    assert (message.kind, message.fz, message.cells, message.y) == ("split", 3.0, 7, 5.0)
+    assert CHANNELS["/log"].schema.FromString(CHANNELS["/log"].take(None, item)).message == "split: two parts"
+
+
+def test_a_window_without_balances_says_nothing_of_them():
+    assert numbers.ledger(None, window(10**9)) is None
+    message = messages.Ledger.FromString(numbers.budget(None, window(10**9, budget={"fz_drag": 2.0})))
+    assert (list(message.name), list(message.value)) == (["fz_drag"], [2.0])
+
+
+def test_a_channel_from_outside_is_one_line(monkeypatch, record, tmp_path):
+    """It stands in the file beside the others, with its schema, and theirs stay as they are."""
+
+    def overturning(info, frame):
+        return numbers.named(frame.t_ns, {"my": 5.0 * frame.load[:, 0].sum()})
+
+    plain = record(tmp_path / "plain.mcap")
+    monkeypatch.setitem(CHANNELS, "/load/overturning", Channel(messages.Ledger, When.WINDOW, overturning))
+    path = record(tmp_path / "more.mcap")
+    found = [(t, *messages.Ledger.FromString(d).value) for _, t, d in stored(path, ["/load/overturning"])]
+    run = read_run(path)
+    assert found == list(zip(run.t_ns.tolist(), (5.0 * run.component("fx")).tolist(), strict=True))
+    assert len(found) == 240
+    assert list(stored(path, ["/load/structure", "/ice/nodes"])) == list(
+        stored(plain, ["/load/structure", "/ice/nodes"])
+    )
+
+
+@pytest.mark.parametrize(
+    ("when", "item"), [(When.START, None), (When.EVENT, Event), (When.PICTURE, Frame), (When.MESH, Frame)]
+)
+def test_a_channel_is_asked_when_it_is_due(record, tmp_path, when, item):
+    seen = []
+    own = {**CHANNELS, "/mine": Channel(messages.Ledger, when, lambda info, *what: seen.append(what))}
+    path = record(tmp_path / "run.mcap", channels=own)
+    like = {When.START: "/tf", When.EVENT: "/events", When.PICTURE: "/ice/nodes", When.MESH: "/ice/sheet"}[when]
+    assert len(seen) == len(list(stored(path, [like])))
+    assert all(isinstance(what, item) for (what,) in seen) if item else seen == [()]
+    assert not list(stored(path, ["/mine"]))  # it had nothing to say
 
 
 def test_nodes_that_left_the_lattice_are_not_drawn(scenario, synthetic):
     sheet = synthetic.sheet(scenario, 8.0)
-    records = pictures.node_records(channels.nodes(0, sheet))
+    records = pictures.node_records(views.nodes(0, sheet))
     assert len(records) == sheet.present.sum() < len(sheet.present)
     assert np.allclose(records["x"], sheet.position[records["node"], 0], rtol=1e-6)
     assert np.array_equal(records["damage"], sheet.damage[sheet.present].astype("f4"))
@@ -69,7 +112,7 @@ def test_nodes_that_left_the_lattice_are_not_drawn(scenario, synthetic):
 
 def test_the_mesh_of_the_sheet_gives_its_cells_back(scenario, synthetic):
     sheet = synthetic.sheet(scenario, 8.0)
-    quads = pictures.sheet_quads(channels.sheet_scene(0, sheet, 3.0))
+    quads = pictures.sheet_quads(views.sheet_solid(0, sheet, 3.0))
     assert len(quads) == sheet.intact.sum()
     expected = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
     assert np.array_equal(quads, expected)
@@ -109,7 +152,7 @@ def test_outline_points_lie_on_the_blocks_and_are_dense(scenario, synthetic):
 def test_no_blocks_and_no_cells_are_pictures_too(scenario, synthetic):
     empty = BlockTable.empty()
     assert len(shapes.prisms(empty)[0]) == 0
-    assert channels.rubble_outline(0, empty, 0.5)
+    assert views.outline(0, empty, 0.5)
     vertices, faces, _ = shapes.solid_sheet(np.zeros((9, 3)), np.empty((0, 4), np.int64), 3.0)
     assert (len(vertices), len(faces)) == (18, 0)
     gone = pictures.sheet_quads(scenes.scene(0, "sheet", [scenes.triangle_list(vertices, faces, np.zeros((18, 3)))]))

@@ -42,7 +42,10 @@ def test_bad_input_is_exit_2_and_one_line(cosim, truncated, tmp_path):
     ]:
         code, out, err = cosim(*arguments)
         assert (code, out) == (2, ""), arguments
-        assert says in err and err.startswith("cosim: ") and err.count("\n") == 1 and "Traceback" not in err, err
+        assert says in err
+        assert err.startswith("cosim: ")
+        assert err.count("\n") == 1, err
+        assert "Traceback" not in err
 
 
 def test_help_and_list(cosim):

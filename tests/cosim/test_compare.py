@@ -138,8 +138,8 @@ def test_shipped_references_work_on_any_run(run):
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ('quantity = "event_lod"', "use event_load"),
-        ('quantity = "event_load"\nevnt = "split"', "use event"),
+        ('quantity = "event_lod"', "did you mean event_load?"),
+        ('quantity = "event_load"\nevnt = "split"', "did you mean event?"),
         ('quantity = "event_load"', "event is missing"),
         ('quantity = "peak_load"\ncomponent = "fq"', "use one of fx, fy, fz, f"),
         ('quantity = "peak_load"\nmeasured = "3 m"', "wrong unit"),

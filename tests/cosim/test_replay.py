@@ -42,16 +42,21 @@ def near(image, rgb, reach=40):
     return int((np.abs(image - np.array(rgb)).max(axis=2) < reach).sum())
 
 
-def test_picture_without_a_screen(run_file, tmp_path):
-    from PIL import Image
-
-    out = tmp_path / "x.png"
+def photograph(run_file, out):
+    """What the views complain about; skipped where no driver is installed."""
     try:
-        reports = replay.screenshot(run_file, out, at=10.0, size=(1400, 900), settle=1.0)
+        return replay.screenshot(run_file, out, at=10.0, size=(1400, 900), fade=1.0)
     except FailedError as error:
         if "Vulkan" in str(error):
             pytest.skip(str(error))
         raise
+
+
+def test_picture_without_a_screen(run_file, tmp_path):
+    from PIL import Image
+
+    out = tmp_path / "x.png"
+    reports = photograph(run_file, out)
     assert reports == []
     image = np.asarray(Image.open(io.BytesIO(out.read_bytes())).convert("RGB"), int)
     left = image[:, : image.shape[1] * 6 // 10]
@@ -64,9 +69,30 @@ def test_picture_without_a_screen(run_file, tmp_path):
     assert near(right, shapes.PHASE_RGB[Phase.BREAKING]) > 100
 
 
-def test_without_a_driver_the_remedy_is_named(monkeypatch, run_file, tmp_path):
-    """The viewer ends at once when it finds no driver."""
+def test_without_a_driver_the_remedy_is_named(monkeypatch, cosim, run_file, tmp_path):
+    """The viewer answers, and ends when it is to draw; what is asked next is a broken connection."""
+    for name in ("VK_DRIVER_FILES", "VK_ICD_FILENAMES"):
+        monkeypatch.setenv(name, "/nonexistent")
+    code, out, err = cosim("replay", run_file, "--screenshot", tmp_path / "x.png")
+    assert (code, out) == (1, "")
+    assert err.startswith("cosim: the viewer ended by itself (exit code")
+    assert "apt-get install mesa-vulkan-drivers" in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "x.png").exists()
+    with pytest.raises(pytest.skip.Exception, match="Vulkan"):
+        photograph(run_file, tmp_path / "x.png")
+
+
+def test_a_viewer_that_never_starts_is_told_from_one_that_breaks(monkeypatch, run_file, tmp_path):
     real = subprocess.Popen
     monkeypatch.setattr(viewer.subprocess, "Popen", lambda *a, **k: real(["false"]))
-    with pytest.raises(FailedError, match="mesa-vulkan-drivers"):
+    with pytest.raises(FailedError, match=r"exit code 1\).*mesa-vulkan-drivers"):
         replay.screenshot(run_file, tmp_path / "x.png")
+
+
+def test_a_fault_of_ours_beside_a_living_viewer_stays_what_it_is(monkeypatch, run_file, tmp_path):
+    real = subprocess.Popen
+    monkeypatch.setattr(viewer.subprocess, "Popen", lambda *a, **k: real(["sleep", "60"]))
+    monkeypatch.setattr(viewer, "_connect", lambda *a: None)
+    with pytest.raises(ZeroDivisionError), viewer.headless_viewer((10, 10)):
+        raise ZeroDivisionError

@@ -50,7 +50,7 @@ def test_ice_that_rides_up_presses_the_structure_down(case, request):
 @pytest.mark.parametrize("case", ["strip", "at_cone"])
 def test_mass_closes_and_no_block_stands_in_the_structure(case, request):
     scheduler, _ = request.getfixturevalue(case)
-    assert scheduler.ledger.mass_error < 1e-12
+    assert scheduler.ledger.mass_error < 1e-14
     layer = scheduler.rubble.layer
     for section in layer.sections.values():
         for block in section.blocks:
@@ -156,7 +156,7 @@ def test_sections_of_an_upward_cone_are_solid_up_to_its_shaft(y):
     neck = (2.5 - 0.75) * np.sqrt(3.0)
     assert top == pytest.approx(8.0 if y < 0.75 else (2.5 - y) * np.sqrt(3.0), abs=1e-2)
     probe = np.array([(-0.1, neck - 1.9), (0.1, neck - 1.9), (0.1, neck - 1.8), (-0.1, neck - 1.8)])
-    assert overlap_area(probe, parts) == pytest.approx(0.02, rel=1e-6) or y == 1.5
+    assert overlap_area(probe, parts) == pytest.approx(0.02, rel=1e-6)
     assert plane_slope(np.radians(30), breaking="upward").faces_down is False
 
 
@@ -165,7 +165,7 @@ def test_sections_of_an_upward_cone_are_solid_up_to_its_shaft(y):
 def test_shipped_upward_cases_run_to_their_end(name):
     result = run_scenario(load_scenario(name))
     assert sum(e.kind == "circumferential" for e in result.events) >= 4
-    assert result.ledger["mass_error"] < 1e-12
+    assert result.ledger["mass_error"] < 1e-14
     assert result.by_phase["sliding"].value[0] > 1e5
     assert result.peaks.value[2] < 0.0 < result.peaks.value[0]
     assert result.peaks.value[0] < 2e6

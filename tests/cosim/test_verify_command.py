@@ -3,35 +3,24 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
-import typer
-from typer.testing import CliRunner
 
 from cosim.verify.case import at_most, near, plain, value
 from cosim.verify.cases import CASES, run
-from cosim.verify.command import verify_command
-
-APP = typer.Typer()
-APP.command()(verify_command)
 
 
-def call(*arguments: str):  # type: ignore[no-untyped-def]
-    return CliRunner().invoke(APP, list(arguments))
-
-
-def test_json_of_a_case_is_one_object_with_the_agreed_keys() -> None:
-    result = call("eigenfrequencies", "--set", "nodes=[19,31]", "--json")
-    assert result.exit_code == 0
-    case = json.loads(result.stdout)
+def test_json_of_a_case_is_one_object_with_the_agreed_keys(cosim):
+    code, out, err = cosim("verify", "eigenfrequencies", "--set", "nodes=[19,31]", "--json")
+    assert (code, err) == (0, "")
+    case = json.loads(out)
     assert set(case) == {"case", "parameters", "quantities", "passed"}
     assert {"name", "value", "unit", "reference", "source", "tolerance", "passed"} <= set(case["quantities"][0])
     assert case["passed"] is True
 
 
-def test_parameters_without_a_reference_still_give_values() -> None:
-    case = json.loads(call("eigenfrequencies", "--set", "nodes=[25,41]", "--set", "nu=0.25", "--json").stdout)
+def test_parameters_without_a_reference_still_give_values(cosim):
+    case = json.loads(cosim("verify", "eigenfrequencies", "--set", "nodes=[25,41]", "--set", "nu=0.25", "--json")[1])
     assert case["parameters"]["nodes"] == [25, 41]
     assert all(q["reference"] is None and q["passed"] is None for q in case["quantities"])
     lattice = next(q for q in case["quantities"] if q["name"] == "lattice 25x41")
@@ -41,7 +30,8 @@ def test_parameters_without_a_reference_still_give_values() -> None:
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        (("nonsense",), "known cases are"),
+        (("xyz",), "known: eigenfrequencies, "),
+        (("frooude",), "did you mean froude?"),
         (("--set", "nu=0.2"), "--set needs a case"),
         (("eigenfrequencies", "--set", "nuu=0.2"), "did you mean nu?"),
         (("eigenfrequencies", "--set", "nu=0.4"), "Poisson's ratio 0.4"),
@@ -54,35 +44,37 @@ def test_parameters_without_a_reference_still_give_values() -> None:
         (("dispersion", "--set", "stiffness=foo"), "unknown stiffness set"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_2(arguments: tuple[str, ...], text: str) -> None:
-    result = call(*arguments)
-    assert result.exit_code == 2
-    assert text in result.stderr
-    assert result.stderr.strip().count("\n") == 0
+def test_bad_input_is_one_line_and_exit_2(cosim, arguments, text):
+    code, out, err = cosim("verify", *arguments)
+    assert (code, out) == (2, "")
+    assert text in err
+    assert err.startswith("cosim: ")
+    assert err.count("\n") == 1
 
 
-def test_a_failed_check_is_exit_1(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_check_is_exit_1(cosim, monkeypatch):
     import cosim.verify.eigenfrequencies as case
 
     monkeypatch.setitem(case.LATTICE, (19, 31), [0.7] * 20)
-    result = call("eigenfrequencies", "--set", "nodes=[19,31]")
-    assert result.exit_code == 1
-    assert "FAILED" in result.stdout
+    code, out, err = cosim("verify", "eigenfrequencies", "--set", "nodes=[19,31]")
+    assert code == 1
+    assert "FAILED" in out
+    assert "1 of 1 cases miss their reference: eigenfrequencies" in err
 
 
-def test_figures_are_saved_as_png(tmp_path: Path) -> None:
+def test_figures_are_saved_as_png(tmp_path):
     pytest.importorskip("matplotlib")
     run("dispersion", plots_dir=tmp_path, quick=True)
     assert sorted(p.name for p in tmp_path.iterdir()) == [f"dispersion_figure_2-{n}.png" for n in (10, 11, 18, 9)]
 
 
-def test_every_case_says_what_it_is() -> None:
+def test_every_case_says_what_it_is():
     for module in CASES.values():
         assert module.__doc__
         assert isinstance(module.PARAMETERS, dict)
 
 
-def test_nan_never_passes() -> None:
+def test_nan_never_passes():
     with pytest.raises(ValueError, match="not finite"):
         plain([1.0, float("nan")])
     assert near("x", 1.02, "-", 1.0, 0.01, "").passed is False

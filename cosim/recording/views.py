@@ -1,0 +1,87 @@
+"""Channels of pictures: structure, sheet and blocks as viewers draw them. Each gives one serialised message."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cosim.observer import RunInfo
+from cosim.recording import scenes, shapes
+from coupling.interface import BlockTable, Frame, Phase, SheetView
+
+POINTS_ON_STRUCTURE, POINTS_ON_BLOCK = 3, 5  #: along an edge, on one thickness of the ice
+
+
+def structure_place(_info: RunInfo) -> bytes:
+    """The structure's place in the world."""
+    return scenes.transform(0, "structure")
+
+
+def structure_scene(info: RunInfo) -> bytes:
+    """The structure's surface."""
+    points, faces = info.structure_mesh
+    return scenes.scene(0, "structure", [scenes.triangle_list(points, faces, np.array(shapes.STRUCTURE_RGB, float))])
+
+
+def structure_points(info: RunInfo) -> bytes:
+    """Points along the edges of the structure's surface, for a viewer that draws points only."""
+    points, faces = info.structure_mesh
+    edges = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
+    sampled = shapes.along_edges(points, edges, info.thickness / POINTS_ON_STRUCTURE)[0]
+    return scenes.points(0, sampled, np.tile(np.array(shapes.STRUCTURE_RGB, float), (len(sampled), 1)))
+
+
+def ice_nodes(_info: RunInfo, frame: Frame) -> bytes:
+    """Nodes that are still part of the lattice."""
+    return nodes(frame.t_ns, frame.sheet)
+
+
+def ice_sheet(info: RunInfo, frame: Frame) -> bytes:
+    """Intact cells as a solid."""
+    return sheet_solid(frame.t_ns, frame.sheet, info.thickness)
+
+
+def rubble_scene(_info: RunInfo, frame: Frame) -> bytes:
+    """Blocks as prisms."""
+    return prisms(frame.t_ns, frame.blocks)
+
+
+def rubble_outline(info: RunInfo, frame: Frame) -> bytes:
+    """Points along the edges of the blocks, dense enough to be seen as blocks by a viewer that draws points only."""
+    return outline(frame.t_ns, frame.blocks, info.thickness / POINTS_ON_BLOCK)
+
+
+def nodes(t_ns: int, sheet: SheetView) -> bytes:
+    """Point cloud of the nodes that are still part of the lattice; ``node`` is their number."""
+    kept = np.flatnonzero(sheet.present)
+    data = np.empty(len(kept), scenes.NODE)
+    scenes.fill(data, sheet.position[kept], shapes.ice_colour(sheet.damage[kept], sheet.utilisation[kept]))
+    data["damage"], data["utilisation"] = sheet.damage[kept], sheet.utilisation[kept]
+    data["present"], data["node"] = 1, kept
+    return scenes.cloud(t_ns, data)
+
+
+def sheet_solid(t_ns: int, sheet: SheetView, thickness: float) -> bytes:
+    """Scene of the intact cells as a solid of this thickness [m]."""
+    quads = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
+    vertices, faces, node = shapes.solid_sheet(sheet.position, quads, thickness)
+    rgb = shapes.ice_colour(sheet.damage, sheet.utilisation)[node]
+    return scenes.scene(t_ns, "sheet", [scenes.triangle_list(vertices, faces, rgb)])
+
+
+def prisms(t_ns: int, blocks: BlockTable) -> bytes:
+    """Scene of the blocks, one list of triangles for each phase."""
+    points, faces, owner = shapes.prisms(blocks)
+    lists = []
+    for phase in (Phase.ROTATING, Phase.SLIDING):
+        used, compact = np.unique(faces[blocks.phase[owner] == phase], return_inverse=True)
+        colour = np.array(shapes.PHASE_RGB[phase], float)
+        lists.append(scenes.triangle_list(points[used], compact.reshape(-1, 3), colour))
+    return scenes.scene(t_ns, "rubble", lists)
+
+
+def outline(t_ns: int, blocks: BlockTable, spacing: float) -> bytes:
+    """Point cloud along the edges of the blocks, at most ``spacing`` [m] apart."""
+    edges, block = shapes.prism_edges(blocks)
+    points, edge = shapes.along_edges(shapes.prisms(blocks)[0], edges, spacing)
+    colour = np.array([shapes.PHASE_RGB[p] for p in Phase], float)
+    return scenes.points(t_ns, points, colour[blocks.phase[block[edge]]])

@@ -1,0 +1,51 @@
+"""Names that a scenario chooses from: those of the tables of the packages, so that a new entry can be chosen at once.
+
+A table is imported when a name is checked, because listing scenarios needs no solver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Annotated
+
+from pydantic import AfterValidator
+from pydantic_core import PydanticCustomError
+
+from cosim.nearest import hint
+
+
+def schemes() -> Iterable[str]:
+    """Coupling schemes."""
+    from coupling.schemes import SCHEMES
+
+    return SCHEMES
+
+
+def contacts() -> Iterable[str]:
+    """Models of the contact between sheet and structure."""
+    from coupling.contact import CONTACTS
+
+    return CONTACTS
+
+
+def stiffness_sets() -> Iterable[str]:
+    """Sets of spring stiffnesses of the lattice."""
+    from lattice.stiffness import STIFFNESS_SETS
+
+    return STIFFNESS_SETS
+
+
+def one_of(table: Callable[[], Iterable[str]]) -> AfterValidator:
+    """Refuses a name that the table does not hold, with the one that is meant most likely."""
+
+    def known(name: str) -> str:
+        if name not in table():
+            raise PydanticCustomError("name", "unknown name; {hint}", {"hint": hint(name, table())})
+        return name
+
+    return AfterValidator(known)
+
+
+Scheme = Annotated[str, one_of(schemes)]
+StiffnessSet = Annotated[str, one_of(stiffness_sets)]
+ContactModel = Annotated[str, one_of(contacts)]
