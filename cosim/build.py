@@ -9,21 +9,22 @@ import numpy as np
 from cosim.observer import RunInfo
 from cosim.scenario.scenario import Scenario
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import NS, Array, IntArray
+from coupling.interface import NS, RubbleParticipant, Structure
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
-from coupling.scheduler import RubbleParticipant, Scheduler
+from coupling.scheduler import Scheduler
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble
 from coupling.steering import ByPower, Steering, fixed
-from coupling.structure import DEEP, Structure, cone, plane_slope
+from coupling.structure import DEEP, cone, plane_slope
 from lattice.explicit_sheet import ExplicitSheet
+from lattice.floe import Floe
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS
-from rubble.layer import Domain
+from rubble.domain import Domain
 from rubble.physics import RubblePhysics
 
 
@@ -96,10 +97,10 @@ def build_structure(scenario: Scenario) -> Structure:
     return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth, breaking=s.breaking)
 
 
-def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Sheet:
+def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     """The floe, its front on the structure's axis plane just touching the face with the edge that meets it first."""
     s = scenario.sheet
-    front = float(structure.face_x(0.0, ice.freeboard if structure.faces_down else ice.freeboard - ice.h))
+    front = structure.foremost_x(ice.freeboard if structure.faces_down else ice.freeboard - ice.h)
     grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
     held = np.zeros((grid.nodes, 2), bool)
     if s.back != "free":
@@ -139,10 +140,8 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,
     )
     pitch = r.columns_per_section * grid.d
-    crest = float(structure.face_x(0.0, structure.top))  # of a plane that leans back, over which ice may ride
-    reach = float(structure.radius(0.0)) if structure.revolved else max(crest, 0.0)
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
-    domain = Domain(x_max=reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
+    domain = Domain(x_max=structure.reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
     return RubblePort(
         structure,
         physics,
@@ -156,28 +155,7 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
 
 def run_info(scenario: Scenario) -> RunInfo:
     """What stays constant over a run, for observers."""
-    mesh = structure_mesh(build_structure(scenario), 2.0 * scenario.sheet.width)
+    mesh = build_structure(scenario).mesh(2.0 * scenario.sheet.width)
     return RunInfo(
         scenario, mesh, tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns, scenario.window_ns
     )
-
-
-def structure_mesh(structure: Structure, width: float, around: int = 96) -> tuple[Array, IntArray]:
-    """Triangles of the structure's surface; a plane slope is drawn ``width`` wide. The sea bed is left out."""
-    z = structure.z.copy()
-    z[0] = max(z[0], -40.0)
-    r = structure.radius(z)
-    if structure.revolved:
-        angle = np.linspace(0.0, 2.0 * np.pi, around + 1)
-        ring = np.stack((np.cos(angle), np.sin(angle)))
-        points = np.stack((r[:, None] * ring[0], r[:, None] * ring[1], z[:, None] + 0.0 * ring[0]), axis=-1)
-    else:
-        y = np.array([-0.5 * width, 0.5 * width])
-        points = np.stack((-r[:, None] + 0.0 * y, y + 0.0 * r[:, None], z[:, None] + 0.0 * y), axis=-1)[:, ::-1]
-    rows, columns = points.shape[:2]
-    i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
-    a = (i * columns + j).ravel()
-    triangles = np.concatenate(
-        (np.column_stack((a, a + 1, a + columns)), np.column_stack((a + 1, a + columns + 1, a + columns)))
-    )
-    return points.reshape(-1, 3), triangles.astype(np.int64)

@@ -25,18 +25,15 @@ lattice: that is lost, and shows as a mean of this term.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 
-from coupling.interface import Array
+from coupling.interface import Array, ForcePairs
 
 TERMS = ("dry_tops", "flooded_rubble", "pressed_sheet", "drag", "inertia", "held", "staggering")
 AXES = {"fx": 0, "fz": 1}  #: component of the load, its place in a pair
-Pairs = Mapping[str, tuple[float, float]]  #: mean force in x and z by term [N]
 
 
-def force_budget(load: Array, *participants: Pairs) -> dict[str, float]:
+def force_budget(load: Array, *participants: ForcePairs) -> dict[str, float]:
     """Terms ``fx_dry_tops`` ... ``fz_staggering`` and residuals ``fx_residual``, ``fz_residual`` [N].
 
     ``load`` (3,) on the structure; each participant gives its own terms, those of the same name are added.

@@ -23,10 +23,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.interface import Array, IntArray
-from coupling.structure import Structure, overlap_of
+from coupling.interface import Array, IntArray, Structure
 
-SAMPLES = 8  #: points across the width of a node
+#: points across the width of a node: on a cone of 15 m the mean overlap of nodes 1 m apart is within 1 % of the exact
+#: one from L = 0.1 m on
+SAMPLES = 8
 
 
 @dataclass(frozen=True)
@@ -53,13 +54,15 @@ class OverlapContact:
         self._dy = (np.arange(SAMPLES) + 0.5) / SAMPLES - 0.5
         self.set_edge(np.empty(0, np.int64), *np.zeros((3, 0)))
 
-    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
-        """Nodes of the edge and, per node (m,) [m], the front of its ice at t = 0, and the width of its ice.
+    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array, lead: Array | None = None) -> None:
+        """Nodes of the edge and, per node (m,) [m], the front of its ice at t = 0, its width, and how far it leads.
 
-        ``y`` is the middle of the node's ice, which is not the node at the sides of the floe.
+        ``y`` is the middle of the node's ice, which is not the node at the sides of the floe. The force acts at the
+        front, ``lead`` (m,) ahead of the node (none in the floe's first row), and the overlap is that of the front.
         """
         self.nodes, self._x, self._width = nodes, x, width
         self.height = np.zeros(len(nodes))  #: of the points of action above the middle of the ice, (m,) [m]
+        self.lead = np.zeros(len(nodes)) if lead is None else lead  #: of the front ahead of its node, (m,) [m]
         self._sample_y = y[:, None] + width[:, None] * self._dy
 
     def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
@@ -67,7 +70,7 @@ class OverlapContact:
         z = self.touching_z + y[:, 2]
         x = self._x + self._v * t + y[:, 0]
         across = self._sample_y + y[:, 1:2]
-        return overlap_of(x, across, z, self._s.z, self._s.r, self._s.revolved)
+        return self._s.overlap(x, across, z)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] at displacements y (m, 3): an `EdgeContact`."""
@@ -94,11 +97,11 @@ class OverlapContact:
         growing = (L > 0.0) & (whole * cos > L)
         return sin, cos, growing, np.where(growing, L / np.maximum(cos, 1e-12), np.where(L > 0.0, whole, 0.0))
 
-    def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
+    def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:  # noqa: ARG002 - other laws know their nodes
         """Pressure [Pa] at overlaps L (k, SAMPLES) of the nodes `rows`, and its derivative to L [Pa/m]."""
         return np.full(L.shape, self._law.strength), np.zeros(L.shape)
 
-    def settle(self, t: float, y: Array) -> Array:
+    def close_window(self, t: float, y: Array) -> Array:
         """Called at the end of a window: depth to which the touching edge is crushed, (m, SAMPLES) [m]."""
         return self.overlap(t, y)[0]
 
@@ -119,13 +122,13 @@ class CrushingContact(OverlapContact):
 
     The face of contact reaches from the touching edge, h / 2 from the middle of the ice, down to the depth
     s = min(L tan a, h) below it, so the force acts h / 2 - s / 2 from the middle. Its moment bends a downward-breaking
-    edge up, against the vertical force. c and the height are settled at the end of each window.
+    edge up, against the vertical force. c and the height are set at the end of each window.
     """
 
-    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array) -> None:
+    def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array, lead: Array | None = None) -> None:
         """As `OverlapContact.set_edge`; nodes that stay in front keep their damage."""
         known: dict[int, Array] = getattr(self, "_known", {})
-        super().set_edge(nodes, x, y, width)
+        super().set_edge(nodes, x, y, width, lead)
         new = np.append(np.zeros(SAMPLES), self.face * 0.5 * self._h)
         kept = np.array([known.get(n, new) for n in nodes.tolist()]).reshape(-1, SAMPLES + 1)
         self._keep(kept[:, :-1], kept[:, -1])
@@ -135,11 +138,13 @@ class CrushingContact(OverlapContact):
         self._known = dict(zip(self.nodes.tolist(), np.column_stack((crushed, height)), strict=True))
 
     def pressure(self, L: Array, rows: IntArray) -> tuple[Array, Array]:
+        """Elastic up to the strength, where the ice is not crushed yet."""
         elastic = self._law.stiffness * (L - self._crushed[rows])
         bearing = (elastic > 0.0) & (elastic < self._law.strength)
         return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
 
-    def settle(self, t: float, y: Array) -> Array:
+    def close_window(self, t: float, y: Array) -> Array:
+        """The crushed depth follows the overlap, less the closure at full strength; so does the height."""
         L, normal = self.overlap(t, y)
         self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness), self._bearing(L, normal))
         return self._crushed.copy()

@@ -3,7 +3,7 @@
     drift_work = change of the stores + losses + residual
 
 All terms are changes since the start of the run [J]; each is measured where it happens and none is what others leave.
-The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.stock`. Terms between the two:
+The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.energy`. Terms between the two:
 
 * hand-over: what a piece had in the lattice less what its blocks have when they are born (elastic energy is released;
   a rigid block does not bend, has lost its crushed edge, and brings along the water that moves with it),

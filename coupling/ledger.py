@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from coupling.energy import EnergyBalance
-from coupling.interface import NS, SimulationError
+from coupling.interface import NS, HandOver, SimulationError
 
 ENERGY_TOLERANCE = 1e-3  #: of the work done on the sheet
 MASS_TOLERANCE = 1e-12  #: of the initial mass
@@ -33,23 +33,15 @@ class Ledger:
     energy: EnergyBalance = field(default_factory=EnergyBalance)  #: of the whole system
     _work: float = 0.0
 
-    def hand_over(
-        self,
-        t_ns: int,
-        mass: float,
-        trimmed: float,
-        momentum_error: float,
-        angular_momentum_error: float,
-        angular_momentum_change: float,
-    ) -> None:
+    def hand_over(self, t_ns: int, moved: HandOver) -> None:
         """Books one fragment."""
-        self.trimmed_mass += trimmed
-        self.handed_over_mass += mass - trimmed
-        self.momentum_error = max(self.momentum_error, momentum_error)
-        self.angular_momentum_error = max(self.angular_momentum_error, angular_momentum_error)
-        self.angular_momentum_change = max(self.angular_momentum_change, angular_momentum_change)
-        self._check("momentum of a hand-over", momentum_error, t_ns)
-        self._check("angular momentum of a hand-over", angular_momentum_error, t_ns)
+        self.trimmed_mass += moved.trimmed
+        self.handed_over_mass += moved.mass - moved.trimmed
+        self.momentum_error = max(self.momentum_error, moved.momentum_error)
+        self.angular_momentum_error = max(self.angular_momentum_error, moved.angular_momentum_error)
+        self.angular_momentum_change = max(self.angular_momentum_change, moved.angular_momentum_change)
+        self._check("momentum of a hand-over", moved.momentum_error, t_ns)
+        self._check("angular momentum of a hand-over", moved.angular_momentum_error, t_ns)
 
     def crush(self, mass: float) -> None:
         """Books ice that blocks have lost at overloaded contacts."""

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from coupling.interface import NS, SheetEdge, SheetForces, SimulationError
+from coupling.interface import NS, SheetEdge, SheetForces, SheetReport, SimulationError
 from coupling.relaxation import Aitken, change, combined
-from coupling.scheduler import Report, Scheduler, Scheme
+from coupling.scheduler import Scheduler, Scheme
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Iteration:
     stop: bool = True  #: a window that does not converge ends the run; else it is counted
 
 
-def serial_explicit(s: Scheduler) -> Report:
+def serial_explicit(s: Scheduler) -> SheetReport:
     """First the sheet under the rubble's forces of the last window, then the rubble against the way it has gone."""
     force = s.rubble.forces_on_sheet()
     report = s.move_sheet(force)
@@ -44,7 +44,8 @@ class ParallelExplicit:
     def __init__(self) -> None:
         self._carried = SheetForces.none()
 
-    def __call__(self, s: Scheduler) -> Report:
+    def __call__(self, s: Scheduler) -> SheetReport:
+        """One window."""
         force, edges = s.rubble.forces_on_sheet(), self._edges(s)
         report = s.move_sheet(force)
         if edges is None or report.fragments:
@@ -79,11 +80,12 @@ class SerialImplicit:
         self._last: tuple[int, SheetForces] | None = None
         self._unconverged = 0
 
-    def __call__(self, s: Scheduler) -> Report:
-        force, start = self._first_guess(s), s.save()
+    def __call__(self, s: Scheduler) -> SheetReport:
+        """One window, as often as it takes."""
+        force, restore = self._first_guess(s), s.save()
         for k in range(1, self._limits.max_iterations + 1):
             if k > 1:
-                s.restore(start)
+                restore()
             report = s.move_sheet(force)
             s.move_rubble(s.sheet.path(s.rubble.sections_in_use()), force)
             answer = s.rubble.forces_on_sheet()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from coupling.interface import SheetForces, SimulationError
 from coupling.rubble_port import RubblePort
+from coupling.rubble_port.initial import fill, front_sections, rest_again
 from coupling.sheet_port import SheetPort
 
 CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
@@ -16,12 +17,12 @@ ROUNDS = 20
 
 def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, seed: int) -> None:
     """Settles ``volume`` [m^3] of rubble in front of the structure with the sheet in equilibrium on it."""
-    sections = rubble.front_sections()
-    pile = rubble.fill(volume, seed, sheet.edges(sections))
+    sections = front_sections(rubble)
+    pile = fill(rubble, volume, seed, sheet.edges(sections))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):
         sheet.rest_under(rubble.forces_on_sheet())
-        rubble.rest(sheet.edges(sections))
+        rest_again(rubble, sheet.edges(sections))
         before, lift = lift, _lift(rubble.forces_on_sheet())
         if abs(lift - before) <= CHANGE * pile.force:
             sheet.rest_under(rubble.forces_on_sheet())

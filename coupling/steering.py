@@ -10,7 +10,7 @@ from coupling.power import PowerBooks
 Steering = Callable[[int, PowerBooks, bool], int]  #: window [ns], its power, hand-over in it -> next window [ns]
 
 
-def fixed(window_ns: int, power: PowerBooks, jump: bool) -> int:
+def fixed(window_ns: int, _power: PowerBooks, _jump: bool) -> int:
     """The same again."""
     return window_ns
 
@@ -39,6 +39,7 @@ class ByPower:
         return [n * self.substep_ns for n in [*reversed(down), *up]]
 
     def __call__(self, window_ns: int, power: PowerBooks, jump: bool) -> int:
+        """The next window [ns]."""
         ladder = self.ladder
         rung = max(k for k, w in enumerate(ladder) if w <= window_ns)
         if jump:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from lattice.grid import Array, Grid, IntArray
+from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.stiffness import Springs
 
@@ -67,7 +67,7 @@ def cell_dof(grid: Grid, per_node: int) -> IntArray:
     return (grid.cell_nodes[:, :, None] * per_node + np.arange(per_node)).reshape(grid.cells, -1)
 
 
-def assemble(grid: Grid, rows: Array, intact: np.ndarray | None = None) -> sp.csc_matrix:
+def assemble(grid: Grid, rows: Array, intact: BoolArray | None = None) -> sp.csc_matrix:
     """Stiffness of all intact cells from the spring table of one cell, (n, n) with n = dof of the grid [SI]."""
     per_node = rows.shape[1] // 4
     dof = cell_dof(grid, per_node)

@@ -42,7 +42,7 @@ def dispersion(ice: Ice, kx: ArrayLike, ky: ArrayLike) -> Array:
     K = plate_stiffness(ice, kx, ky)
     K[..., 0, 0] += ice.k_f
     scale = 1.0 / np.sqrt(plate_mass(ice))
-    return np.sqrt(np.linalg.eigvalsh(K * scale[:, None] * scale))
+    return np.asarray(np.sqrt(np.linalg.eigvalsh(K * scale[:, None] * scale)))
 
 
 def eigenfrequencies(ice: Ice, Lx: float, Ly: float, count: int) -> Array:
@@ -91,7 +91,7 @@ def _amplitudes(K: Array, inertia: Array, foundation: complex) -> Array:
     b, c = K[..., 0, 1], K[..., 0, 2]
     d, e, f = K[..., 1, 1] - inertia[1], K[..., 2, 2] - inertia[2], K[..., 1, 2]
     determinant = a * (d * e - f**2) - b * (b * e - c * f) + c * (b * f - c * d)
-    return np.stack((d * e - f**2, c * f - b * e, b * f - c * d), axis=-1) / determinant[..., None]
+    return np.asarray(np.stack((d * e - f**2, c * f - b * e, b * f - c * d), axis=-1) / determinant[..., None])
 
 
 def hydrodynamic_damping(ice: Ice, fraction: float) -> float:

@@ -22,14 +22,18 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.engine import GAMMA, Engine, State, Step, point_displacement
-from lattice.grid import Array, IntArray
+from lattice.contact import point_displacement
+from lattice.grid import Array, BoolArray, IntArray
+from lattice.implicit.engine import Engine
+from lattice.implicit.step import GAMMA, Step
+from lattice.loads import Loads, total
 from lattice.springs import pull_on, spring_energy
+from lattice.state import State
 from lattice.stock import Served, Stock, Work
 
 
 @compiled()
-def weighted_square(weight, x, present):
+def weighted_square(weight: Array, x: Array, present: BoolArray) -> float:
     """Sum of weight x^2 over the nodes that are present; ``weight`` (n k,), ``x`` (n, k)."""
     total, k = 0.0, x.shape[1]
     for n in range(x.shape[0]):
@@ -40,7 +44,7 @@ def weighted_square(weight, x, present):
 
 
 @compiled()
-def momentum_of(mass, u_dot, present):
+def momentum_of(mass: Array, u_dot: Array, present: BoolArray) -> float:
     """Momentum along x of the nodes that are present [N s]; ``mass`` (2 n,), ``u_dot`` (n, 2)."""
     total = 0.0
     for n in range(u_dot.shape[0]):
@@ -49,7 +53,7 @@ def momentum_of(mass, u_dot, present):
     return total
 
 
-def no_friction(y: Array, force: Array) -> Array:
+def no_friction(y: Array, force: Array) -> Array:  # noqa: ARG001  as every law of friction
     """A contact without friction."""
     return np.zeros_like(force)
 
@@ -61,7 +65,7 @@ class EnergyBooks:
     engine: Engine
     touch: Work = field(default_factory=Work)  #: of the structure
     rub: Work = field(default_factory=Work)  #: the part of it that is friction
-    others: Work = field(default_factory=Work)  #: of other external forces
+    loads: dict[str, Work] = field(default_factory=dict)  #: of other external forces, by name of `NodeLoad`
     hold: float = 0.0  #: impulse along x of what holds the edge [N s]
     damping: float = 0.0  #: hydrodynamic and material damping
     scheme: float = 0.0  #: taken by the time integration from motions shorter than its step
@@ -75,12 +79,13 @@ class EnergyBooks:
         """A copy with records of its own, see `memory.remember`."""
         new = object.__new__(EnergyBooks)
         new.__dict__.update({k: copy(v) if isinstance(v, Work | Stock) else v for k, v in vars(self).items()})
+        new.loads = {name: copy(work) for name, work in self.loads.items()}
         return new
 
     def __post_init__(self) -> None:
         e = self.engine
         self._held = e.held_x
-        self._held_cells = np.flatnonzero(self._held[e.dof_u].any(axis=1))
+        self._held_cells = np.flatnonzero(self._held[e.springs_u.dof].any(axis=1))
         self.now.mass = float(e.M_u[::2].sum())
 
     @property
@@ -88,10 +93,18 @@ class EnergyBooks:
         """Work of the structure on the sheet [J]."""
         return self.touch.work
 
+    def load(self, name: str) -> Work:
+        """Book of the external force of this name, opened when it is first asked for."""
+        return self.loads.setdefault(name, Work())
+
     @property
-    def rubble(self) -> float:
-        """Work of other external forces [J]."""
-        return self.others.work
+    def received(self) -> float:
+        """Work of all external forces but the contact [J]."""
+        return sum(work.work for work in self.loads.values())
+
+    def received_at(self, drift: float) -> float:
+        """The same for a fixed observer when the frame drifts [J]."""
+        return sum(work.at(drift) for work in self.loads.values())
 
     @property
     def handed_over(self) -> float:
@@ -107,25 +120,25 @@ class EnergyBooks:
     def residual(self) -> float:
         """Energy that no term explains [J]."""
         spent = self.damping + self.scheme + self.fracture + self.handed_over
-        return self.contact + self.rubble - spent - self.stored
+        return self.contact + self.received - spent - self.stored
 
-    def springs(self, u: Array, q: Array, live: np.ndarray) -> float:
+    def springs(self, u: Array, q: Array, live: BoolArray) -> float:
         """Elastic energy of live cells [J]."""
         e = self.engine
-        return float(
-            spring_energy(e.dof_u, *e.sparse_u, live, u.ravel()) + spring_energy(e.dof_q, *e.sparse_q, live, q.ravel())
-        )
+        return float(spring_energy(e.springs_u, live, u.ravel()) + spring_energy(e.springs_q, live, q.ravel()))
 
-    def begin(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
-        """Starts from a deflected state: the work that brought the sheet there counts as the rubble's."""
+    def begin(self, s: State, live: BoolArray, present: BoolArray, loads: Loads) -> None:
+        """Starts from rest under loads that have brought the sheet there: each in proportion to its force and path."""
         self.measure(s, live, present)
-        self.others.work = self.stored
+        parts = [float(np.vdot(load.force_u, s.u) + np.vdot(load.force_q, s.q)) for load in loads]
+        for load, part in zip(loads, parts, strict=True):
+            self.load(load.name).work = self.stored * (part / sum(parts)) if part else 0.0
 
-    def measure(self, s: State, live: np.ndarray, present: np.ndarray) -> None:
+    def measure(self, s: State, live: BoolArray, present: BoolArray) -> None:
         """Takes stock of a state."""
         self.now = self._stock(s, live, present)
 
-    def _stock(self, s: State, live: np.ndarray, present: np.ndarray) -> Stock:
+    def _stock(self, s: State, live: BoolArray, present: BoolArray) -> Stock:
         mass = self.engine.M_u
         return Stock(
             self.springs(s.u, s.q, live),
@@ -135,33 +148,33 @@ class EnergyBooks:
             float(mass[::2][present].sum()),
         )
 
-    def holding(self, u: Array, u_dot: Array, force_u: Array, live: np.ndarray) -> float:
+    def holding(self, u: Array, u_dot: Array, force_u: Array, live: BoolArray) -> float:
         """Force along x that the held nodes need beside the springs and ``force_u`` (n, 2) [N]."""
         e = self.engine
-        pull = pull_on(e.dof_u, *e.sparse_u, self._held_cells, live, self._held, (u + e.alpha * u_dot).ravel())
+        pull = pull_on(e.springs_u, self._held_cells, live, self._held, (u + e.alpha * u_dot).ravel())
         return float(pull) - float(force_u.ravel()[self._held].sum())
 
-    def _kinetic(self, s: State, present: np.ndarray) -> float:
+    def _kinetic(self, s: State, present: BoolArray) -> float:
         e = self.engine
         return 0.5 * float(weighted_square(e.M_u, s.u_dot, present) + weighted_square(e.M_q, s.q_dot, present))
 
-    def _foundation(self, q: Array, present: np.ndarray) -> float:
+    def _foundation(self, q: Array, present: BoolArray) -> float:
         return 0.5 * float(weighted_square(self.engine.k_f, q, present))
 
-    def book_step(
-        self, step: Step, force_u: Array, force_q: Array, nodes: IntArray, live: np.ndarray, present: np.ndarray
-    ) -> None:
+    def book_step(self, step: Step, loads: Loads, nodes: IntArray, live: BoolArray, present: BoolArray) -> None:
         """Books one accepted step; ``nodes`` are those of the contact."""
-        e, dt = self.engine, step.dt
+        e, dt, force_u = self.engine, step.dt, total(loads, self.engine.grid.nodes)[0]
         norms = []
         for b, stage in zip((1.0 - GAMMA, GAMMA), step.stages, strict=True):
             s = stage.state
-            v = point_displacement(s.u_dot, s.q_dot, nodes, step.height)
-            y = point_displacement(s.u, s.q, nodes, step.height)
+            v = point_displacement(s.u_dot, s.q_dot, nodes, step.lever)
+            y = point_displacement(s.u, s.q, nodes, step.lever)
             self.touch.add(dt * b, stage.contact, v)
             self.rub.add(dt * b, self.friction_of(y, stage.contact), v)
-            self.others.add(dt * b, force_u, s.u_dot)
-            self.others.work += dt * b * float(np.vdot(force_q, s.q_dot))
+            for load in loads:
+                book = self.load(load.name)
+                book.add(dt * b, load.force_u, s.u_dot)
+                book.work += dt * b * float(np.vdot(load.force_q, s.q_dot))
             self.hold += dt * b * self.holding(s.u, s.u_dot, force_u, live)
             rate = self.springs(s.u_dot, s.q_dot, live)
             water = float(weighted_square(e.C_q, s.q_dot, present))
@@ -171,14 +184,14 @@ class EnergyBooks:
         self.scheme += 0.5 * (GAMMA * dt) ** 2 * (norms[1] - norms[0])
         self.measure(step.state, live, present)
 
-    def book_served(self, served: Served, s: State, live: np.ndarray, present: np.ndarray) -> None:
+    def book_served(self, served: Served, s: State, live: BoolArray, present: BoolArray) -> None:
         """Books the part of a step that was used before the rest was given up; s is the state at its end."""
         for mine, done in ((self.touch, served.touch), (self.rub, served.rub)):
             mine.work, mine.push = mine.work + done.work, mine.push + done.push
         self.damping, self.hold = self.damping + served.damping, self.hold + served.hold
         self.measure(s, live, present)
 
-    def loss_rate(self, s: State, live: np.ndarray, present: np.ndarray) -> float:
+    def loss_rate(self, s: State, live: BoolArray, present: BoolArray) -> float:
         """Power taken by damping in a state [W]."""
         water = float(weighted_square(self.engine.C_q, s.q_dot, present))
         alpha = self.engine.alpha
@@ -190,7 +203,7 @@ class EnergyBooks:
         live[cell] = True
         self.fracture += self.springs(s.u, s.q, live)
 
-    def book_departure(self, nodes: IntArray, cells: np.ndarray, s: State, *, crushed: bool = False) -> None:
+    def book_departure(self, nodes: IntArray, cells: BoolArray, s: State, *, crushed: bool = False) -> None:
         """Books ice that leaves with all its energy; ``cells`` is the mask of its live cells."""
         mask = np.zeros(self.engine.grid.nodes, bool)
         mask[nodes] = True

@@ -10,24 +10,25 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from lattice.grid import Array, Grid, IntArray
+from lattice.grid import Array, BoolArray, Grid, IntArray
 
 
-def components(grid: Grid, intact: np.ndarray) -> IntArray:
+def components(grid: Grid, intact: BoolArray) -> IntArray:
     """Label of the component of each node, (nodes,)."""
     n = grid.cell_nodes[intact]
     i, j = np.repeat(n[:, 0], 3), n[:, 1:].ravel()
     graph = sp.coo_matrix((np.ones(len(i), np.int8), (i, j)), shape=(grid.nodes, grid.nodes))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    label: IntArray = connected_components(graph, directed=False)[1].astype(np.int64)
+    return label
 
 
 def loose_pieces(
     grid: Grid,
-    intact: np.ndarray,
-    present: np.ndarray,
-    held: np.ndarray,
+    intact: BoolArray,
+    present: BoolArray,
+    held: BoolArray,
     share: float,
-    turned: np.ndarray | None = None,
+    turned: BoolArray | None = None,
 ) -> tuple[list[IntArray], int]:
     """Pieces that leave the lattice, and the number of parts that stay.
 
@@ -51,7 +52,7 @@ def loose_pieces(
     return sorted(pieces, key=lambda p: int(p[0])), int((exists & ~loose).sum())
 
 
-def front_rows(grid: Grid, present: np.ndarray) -> IntArray:
+def front_rows(grid: Grid, present: BoolArray) -> IntArray:
     """Row of the foremost node (largest x) of each column, -1 where a column has none, (ny,)."""
     p = present.reshape(grid.nx, grid.ny)
     front: Array = grid.nx - 1 - np.argmax(p[::-1], axis=0)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -43,10 +44,12 @@ class Grid:
 
     @property
     def nodes(self) -> int:
+        """How many."""
         return self.nx * self.ny
 
     @property
     def cells(self) -> int:
+        """How many."""
         return (self.nx - 1) * (self.ny - 1)
 
     @cached_property
@@ -68,9 +71,11 @@ class Grid:
         return np.asarray(np.bincount(self.cell_nodes.ravel(), minlength=self.nodes) * (self.d**2 / 4.0), np.float64)
 
     def node(self, i: int, j: int) -> int:
+        """Number of the node in row i (along x) and column j (along y)."""
         return i * self.ny + j
 
     def edge_nodes(self, side: str) -> IntArray:
         """Nodes of the edge ``x-``, ``x+``, ``y-`` or ``y+``."""
         n = np.arange(self.nodes).reshape(self.nx, self.ny)
-        return {"x-": n[0], "x+": n[-1], "y-": n[:, 0], "y+": n[:, -1]}[side].copy()
+        edges: dict[str, IntArray] = {"x-": n[0], "x+": n[-1], "y-": n[:, 0], "y+": n[:, -1]}
+        return edges[side].copy()

@@ -21,9 +21,15 @@ class BeamTest:
     factor: float  #: f of (4.30), found by simulating the beam [-]
 
 
+POSITIVE = (
+    *("E", "h", "rho_i", "rho_w", "g"),
+    *("sigma_t", "sigma_f", "sigma_c", "sigma_f_upward", "sigma_f_downward", "sigma_shear", "K_IC"),
+)
+
+
 @dataclass(frozen=True)
 class Ice:
-    """Elastic sheet floating on water, in SI units."""
+    """Elastic sheet floating on water, in SI units. A strength is infinite unless a chosen criterion needs it."""
 
     E: float  #: Young's modulus [Pa]
     nu: float  #: Poisson's ratio, at most 1/3 [-]
@@ -35,13 +41,22 @@ class Ice:
     sigma_c: float = np.inf  #: uniaxial compressive strength [Pa]
     beam_test: BeamTest | None = None
     g: float = 9.81  #: [m/s2]
+    sigma_spall: float = -np.inf  #: sum of principal stresses at spalling, negative [Pa]
+    sigma_f_upward: float = np.inf  #: flexural strength in upward bending, bottom in tension [Pa]
+    sigma_f_downward: float = np.inf  #: flexural strength in downward bending, top in tension [Pa]
+    sigma_shear: float = np.inf  #: out-of-plane shear strength [Pa]
+    K_IC: float = np.inf  #: fracture toughness [Pa sqrt(m)]
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.nu <= 1.0 / 3.0 + 1e-12:
             raise ValueError(f"Poisson's ratio {self.nu:g} gives negative spring stiffness (3.21): use 0 to 1/3")
-        for name in ("E", "h", "rho_i", "rho_w", "g", "sigma_t", "sigma_f", "sigma_c"):
+        for name in POSITIVE:
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} = {getattr(self, name):g} must be greater than 0")
+        if not self.sigma_spall < 0.0:
+            raise ValueError(
+                f"sigma_spall = {self.sigma_spall:g} Pa must be negative: it is a compressive stress (4.9)"
+            )
 
     @property
     def D(self) -> float:
@@ -61,7 +76,7 @@ class Ice:
     @property
     def l_c(self) -> float:
         """Characteristic length of the floating plate, (D / rho_w g)^(1/4) [m]."""
-        return (self.D / self.k_f) ** 0.25
+        return float((self.D / self.k_f) ** 0.25)
 
     @property
     def freeboard(self) -> float:
@@ -69,7 +84,10 @@ class Ice:
         return self.h * (1.0 - self.rho_i / self.rho_w)
 
     def stress_beside_crack(self, d: float) -> float:
-        """Limit of the criterion beside a broken cell of size d [m], the right side of (4.31) times E [Pa]."""
+        """Bending stress that a cell of size d [m] bears beside a crack tip, right side of (4.31) times E [Pa].
+
+        Without a beam test nothing is known of the concentration there, and the limit is sigma_f.
+        """
         test = self.beam_test
         if test is None:
             return self.sigma_f
@@ -80,4 +98,4 @@ class Ice:
             )
         sigma_beam = 6.0 * test.failure_load * test.length / (test.width * self.h**2)  # (4.27)
         ratio = d / test.width
-        return sigma_beam * 0.5 * (1.0 / np.sqrt(ratio) + 1.0 / np.sqrt(2.0 - ratio)) * test.factor
+        return float(sigma_beam * 0.5 * (1.0 / np.sqrt(ratio) + 1.0 / np.sqrt(2.0 - ratio)) * test.factor)

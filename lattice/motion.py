@@ -68,6 +68,7 @@ class MovingPiece:
         return full.reshape(-1, 3)
 
     def state(self, cells: IntArray) -> CellState:
+        """Strain of these cells now."""
         grid = self.piece.grid
         return CellState.of(grid, np.zeros((grid.nodes, 2)), self.q, cells)
 

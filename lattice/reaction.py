@@ -12,15 +12,20 @@ while its contact is the mean of its two ends: the sum is then off by the error 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.engine import GAMMA, Engine, State, Step
-from lattice.grid import Array, IntArray
-from lattice.springs import spring_force
+from lattice.grid import Array, BoolArray, IntArray
+from lattice.implicit.engine import Engine
+from lattice.implicit.step import GAMMA, Step
+from lattice.loads import Loads
+from lattice.springs import SpringTable, spring_force
+from lattice.state import State
+
+Pair = tuple[float, float]  #: along x and z [N]
 
 
 class Mean(NamedTuple):
@@ -33,21 +38,37 @@ class Mean(NamedTuple):
     slope: float = 0.0
 
 
+class Coefficients(NamedTuple):
+    """Of the equation of motion, on every degree of freedom."""
+
+    k_f: Array  #: (3 n,) foundation [N/m]
+    C_q: Array  #: (3 n,) hydrodynamic damping [N s/m]
+    M_q: Array  #: (3 n,) [kg], [kg m2]
+    M_u: Array  #: (2 n,) [kg]
+
+
+class Applied(NamedTuple):
+    """Sums of external forces."""
+
+    by_name: dict[str, Pair]  #: of each `NodeLoad`
+    held: float = 0.0  #: the part along x that acts on held nodes, which pass it on at once [N]
+
+
 @dataclass
 class Reaction:
     """Mean forces on the sheet over a window in x and z [N]."""
 
-    foundation: tuple[float, float] = (0.0, 0.0)  #: of the water under the deflection, -k_f w
-    drag: tuple[float, float] = (0.0, 0.0)  #: hydrodynamic damping
-    inertia: tuple[float, float] = (0.0, 0.0)  #: minus mass times acceleration
-    held: tuple[float, float] = (0.0, 0.0)  #: of the supports, on the sheet
-    applied: tuple[float, float] = (0.0, 0.0)  #: of the other external forces (the rubble's)
+    foundation: Pair = (0.0, 0.0)  #: of the water under the deflection, -k_f w
+    drag: Pair = (0.0, 0.0)  #: hydrodynamic damping
+    inertia: Pair = (0.0, 0.0)  #: minus mass times acceleration
+    held: Pair = (0.0, 0.0)  #: of the supports, on the sheet
+    applied: dict[str, Pair] = field(default_factory=dict)  #: of the other external forces, by name of `NodeLoad`
 
 
 class Support:
     """The nodes that are held along x, and the cells around them."""
 
-    def __init__(self, engine: Engine, held: np.ndarray):
+    def __init__(self, engine: Engine, held: BoolArray):
         """``held`` (nodes,), or (nodes, 2) each direction on its own."""
         grid = engine.grid
         self.engine = engine
@@ -55,14 +76,17 @@ class Support:
         self._cells: IntArray = np.flatnonzero(self.held[grid.cell_nodes].any(axis=1))
         self._around, local = np.unique(grid.cell_nodes[self._cells], return_inverse=True)  # nodes of these cells
         local = local.reshape(-1, 4)
-        self._dof = (2 * local[:, :, None] + np.arange(2)).reshape(len(local), 8)
+        dof = (2 * local[:, :, None] + np.arange(2)).reshape(len(local), 8)
+        self._springs = SpringTable(dof, engine.springs_u.place, engine.springs_u.value)
         self._reacts = np.flatnonzero(self.held[self._around])
+        self.coefficients = Coefficients(engine.k_f, engine.C_q, engine.M_q, engine.M_u)
 
-    def applied(self, nodes: IntArray | slice, force_x: Array, force_z: Array) -> tuple[float, float, float]:
-        """Sums of external forces on nodes (k,): x, z, and the part of x that held nodes pass on at once [N]."""
-        return float(force_x.sum()), float(force_z.sum()), float(force_x[self.held[nodes]].sum())
+    def applied(self, loads: Loads) -> Applied:
+        """Sums of constant loads."""
+        sums = {load.name: (float(load.force_u[:, 0].sum()), float(load.force_q[:, 0].sum())) for load in loads}
+        return Applied(sums, sum(float(load.force_u[self.held, 0].sum()) for load in loads))
 
-    def force(self, mean: Mean, a: State, b: State, dt: float, live: np.ndarray) -> float:
+    def force(self, mean: Mean, a: State, b: State, dt: float, live: BoolArray) -> float:
         """Mean force along x on the sheet, from a to b in ``dt`` [s], with elastic and material damping [N]."""
         if not len(self._reacts):
             return 0.0
@@ -72,24 +96,23 @@ class Support:
             x += mean.slope * (mean.a.u_dot[n] - mean.b.u_dot[n])
         if e.alpha:
             x += e.alpha / dt * (b.u[n] - a.u[n])
-        return float(spring_force(self._dof, *e.sparse_u, live[self._cells], x.ravel())[2 * self._reacts].sum())
+        return float(spring_force(self._springs, live[self._cells], x.ravel())[2 * self._reacts].sum())
 
 
 @compiled()
-def _sums(mean_a, mean_b, mean_va, mean_vb, weights, q_0, q_1, v_0, v_1, u_0, u_1, k_f, C_q, M_q, M_u, present):
-    """Sums over the nodes that are present: k_f w, C times the way of w, mass times the gain of velocity in z and x.
-
-    ``mean_...`` (n, 3) and ``weights`` (3,) as in `Mean`; ``q``, v = q_dot (n, 3) and u = u_dot (n, 2) at the start and
-    at the end of a window.
-    """
+def _sums(
+    mean: Mean, start: State, end: State, of: Coefficients, present: BoolArray
+) -> tuple[float, float, float, float]:
+    """Over the nodes that are present: k_f w, C times the path of w, mass times the gain of velocity in z and x."""
     lift = brake = up = ahead = 0.0
+    a, b = mean.a, mean.b
     for n in range(len(present)):
         if present[n]:
-            w = weights[0] * mean_a[n, 0] + weights[1] * mean_b[n, 0] + weights[2] * (mean_va[n, 0] - mean_vb[n, 0])
-            lift += k_f[3 * n] * w
-            brake += C_q[3 * n] * (q_1[n, 0] - q_0[n, 0])
-            up += M_q[3 * n] * (v_1[n, 0] - v_0[n, 0])
-            ahead += M_u[2 * n] * (u_1[n, 0] - u_0[n, 0])
+            w = mean.weight_a * a.q[n, 0] + mean.weight_b * b.q[n, 0] + mean.slope * (a.q_dot[n, 0] - b.q_dot[n, 0])
+            lift += of.k_f[3 * n] * w
+            brake += of.C_q[3 * n] * (end.q[n, 0] - start.q[n, 0])
+            up += of.M_q[3 * n] * (end.q_dot[n, 0] - start.q_dot[n, 0])
+            ahead += of.M_u[2 * n] * (end.u_dot[n, 0] - start.u_dot[n, 0])
     return lift, brake, up, ahead
 
 
@@ -99,32 +122,17 @@ def between(
     b: State,
     dt: float,
     mean: Mean,
-    live: np.ndarray,
-    present: np.ndarray,
-    applied: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    live: BoolArray,
+    present: BoolArray,
+    applied: Applied,
 ) -> Reaction:
-    """Means over a time ``dt`` [s] in which ``present`` nodes go from a to b; ``applied`` as in `Support`."""
-    e, weights = support.engine, (mean.weight_a, mean.weight_b, mean.slope)
-    lift, brake, up, ahead = _sums(
-        mean.a.q,
-        mean.b.q,
-        mean.a.q_dot,
-        mean.b.q_dot,
-        weights,
-        a.q,
-        b.q,
-        a.q_dot,
-        b.q_dot,
-        a.u_dot,
-        b.u_dot,
-        e.k_f,
-        e.C_q,
-        e.M_q,
-        e.M_u,
-        present,
-    )
+    """Means over a time ``dt`` [s] in which ``present`` nodes go from a to b."""
+    rows = Mean(mean.a.in_rows(), mean.b.in_rows(), mean.weight_a, mean.weight_b, mean.slope)
+    lift, brake, up, ahead = _sums(rows, a.in_rows(), b.in_rows(), support.coefficients, present)
     held = support.force(mean, a, b, dt, live)
-    return Reaction((0.0, -lift), (0.0, -brake / dt), (-ahead / dt, -up / dt), (held - applied[2], 0.0), applied[:2])
+    return Reaction(
+        (0.0, -lift), (0.0, -brake / dt), (-ahead / dt, -up / dt), (held - applied.held, 0.0), applied.by_name
+    )
 
 
 def of_step(step: Step) -> Mean:

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lattice.criteria import mohr_factors
-from lattice.grid import Array, Grid, IntArray
+from lattice.criteria.mohr import circle_of_connections, mohr_factors
+from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.statics import all_around, held_out_of_plane, in_plane_stiffness, out_of_plane_stiffness, solve
 from lattice.stiffness import hrennikoff
-from lattice.strain import CellState, circle_of_connections
+from lattice.strain import CellState
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,12 @@ class EdgeCrack:
 
     @property
     def grid(self) -> Grid:
+        """Mesh of the whole plate, cells of the cut included."""
         return Grid(self.cells + 1, self.cells + 1, self.L / self.cells)
 
     @property
     def row(self) -> int:
+        """Column of cells along which the crack runs, counted along y."""
         return self.cells // 2
 
     def displacement(self) -> Array:
@@ -68,16 +70,18 @@ class Piece:
 
     ice: Ice
     grid: Grid
-    intact: np.ndarray  #: (nx - 1, ny - 1), False where cut
+    intact: BoolArray  #: (nx - 1, ny - 1), False where cut
     tip: IntArray  #: loaded nodes
     root: tuple[int, int, int]  #: first row of cells inside the beam: its column, first cell and number of cells
 
     def load(self) -> Array:
+        """One newton downwards, spread over the tip, (3 nodes,) [N]."""
         F = np.zeros(3 * self.grid.nodes)
         F[3 * self.tip] = -1.0 / len(self.tip)
         return F
 
     def held(self) -> IntArray:
+        """Degrees of freedom that the clamped edges hold."""
         return held_out_of_plane(self.grid, all_around("clamped"))
 
     def deflection(self) -> Array:
@@ -126,7 +130,7 @@ def factor_f(ice: Ice, L_b: float, w: float, cells: int, ratio: float = 5.0) -> 
     piece = cantilever(ice, L_b, w, cells)
     left = float(beam_strain(piece, piece.deflection(), L_b, w, ratio)[0][0])
     d_w = 1.0 / cells
-    return left / (0.5 * (1.0 / np.sqrt(d_w) + 1.0 / np.sqrt(2.0 - d_w)))
+    return float(left / (0.5 * (1.0 / np.sqrt(d_w) + 1.0 / np.sqrt(2.0 - d_w))))
 
 
 def l_beam(ice: Ice, L_1: float, L_2: float, width: float, d: float, margin: float) -> Piece:

@@ -11,7 +11,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh, splu
 
 from lattice.assembly import assemble, out_of_plane_mass, out_of_plane_springs
-from lattice.grid import Array, Grid
+from lattice.grid import Array, Grid, IntArray
 from lattice.ice import Ice
 from lattice.statics import held_out_of_plane, ice_area
 from lattice.stiffness import Springs
@@ -29,7 +29,7 @@ class Plate:
     """Out-of-plane lattice with its supports; only the free degrees of freedom, in the order of ``dof``."""
 
     grid: Grid
-    dof: np.ndarray  #: (n,) numbers in (w, phi_x, phi_y) of all nodes
+    dof: IntArray  #: (n,) numbers in (w, phi_x, phi_y) of all nodes
     springs: sp.csc_matrix  #: (n, n) stiffness of the connections, which carry the material damping (2.30)-(2.33)
     mass: Array  #: (n,) [kg], [kg m2]
     area: Array  #: (n,) area on the foundation, zero for rotations [m2]
@@ -37,6 +37,7 @@ class Plate:
 
     @classmethod
     def build(cls, grid: Grid, ice: Ice, springs: Springs, supports: Mapping[str, str]) -> Plate:
+        """All cells intact; supports of the edges as in `lattice.statics`."""
         K = assemble(grid, out_of_plane_springs(springs, grid.d))
         dof = np.setdiff1d(np.arange(3 * grid.nodes), held_out_of_plane(grid, supports))
         area = np.zeros(3 * grid.nodes)

@@ -2,66 +2,77 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from lattice.assembly import cell_dof
 from lattice.compiled import compiled
-from lattice.grid import Array, IntArray
+from lattice.grid import Array, BoolArray, Grid, IntArray
 
 TOUCHED = 4  #: dof of a cell with which one spring is connected, at most
 
 
-def sparse_rows(rows: Array) -> tuple[IntArray, Array]:
-    """The entries of a spring table (springs, dof of a cell) that are not zero: place and value, (springs, 4)."""
-    place, value = np.zeros((len(rows), TOUCHED), np.int64), np.zeros((len(rows), TOUCHED))
-    for k, row in enumerate(rows):
-        at = np.flatnonzero(row)
-        place[k, : len(at)], value[k, : len(at)] = at, row[at]
-    return place, value
+class SpringTable(NamedTuple):
+    """The springs of every cell: where they are fastened, and the entries of `assembly`'s rows that are not zero."""
+
+    dof: IntArray  #: (cells, dof of a cell)
+    place: IntArray  #: (springs, 4) places in a row of ``dof``
+    value: Array  #: (springs, 4) roots of stiffness [sqrt(N/m)], or 0
+
+    @classmethod
+    def of(cls, grid: Grid, rows: Array) -> SpringTable:
+        """From a spring table (springs, dof of a cell) that holds for all cells of a grid."""
+        place, value = np.zeros((len(rows), TOUCHED), np.int64), np.zeros((len(rows), TOUCHED))
+        for k, row in enumerate(rows):
+            at = np.flatnonzero(row)
+            place[k, : len(at)], value[k, : len(at)] = at, row[at]
+        return cls(cell_dof(grid, rows.shape[1] // 4), place, value)
 
 
 @compiled(inline="always")
-def elongation(dof, place, value, x, c, k):
+def elongation(springs: SpringTable, x: Array, c: int, k: int) -> float:
     """Elongation of spring k of cell c, times the root of its stiffness."""
     e = 0.0
     for i in range(TOUCHED):
-        e += value[k, i] * x[dof[c, place[k, i]]]
+        e += springs.value[k, i] * x[springs.dof[c, springs.place[k, i]]]
     return e
 
 
 @compiled()
-def spring_energy(dof, place, value, live, x):
+def spring_energy(springs: SpringTable, live: BoolArray, x: Array) -> float:
     """Sum over live cells of half the square of each spring's elongation [J]; ``x`` (n,)."""
     total = 0.0
-    for c in range(dof.shape[0]):
+    for c in range(springs.dof.shape[0]):
         if live[c]:
-            for k in range(place.shape[0]):
-                e = elongation(dof, place, value, x, c, k)
+            for k in range(springs.place.shape[0]):
+                e = elongation(springs, x, c, k)
                 total += e * e
     return 0.5 * total
 
 
 @compiled()
-def spring_force(dof, place, value, live, x):
+def spring_force(springs: SpringTable, live: BoolArray, x: Array) -> Array:
     """K x of the springs of live cells, (n,) [N], [N m]."""
     out = np.zeros_like(x)
-    for c in range(dof.shape[0]):
+    for c in range(springs.dof.shape[0]):
         if live[c]:
-            for k in range(place.shape[0]):
-                e = elongation(dof, place, value, x, c, k)
+            for k in range(springs.place.shape[0]):
+                e = elongation(springs, x, c, k)
                 for i in range(TOUCHED):
-                    out[dof[c, place[k, i]]] += e * value[k, i]
+                    out[springs.dof[c, springs.place[k, i]]] += e * springs.value[k, i]
     return out
 
 
 @compiled()
-def pull_on(dof, place, value, cells, live, chosen, x):
+def pull_on(springs: SpringTable, cells: IntArray, live: BoolArray, chosen: BoolArray, x: Array) -> float:
     """Sum of K x over the ``chosen`` dof (n,), of the springs of those ``cells`` that are live [N]."""
     total = 0.0
     for c in cells:
         if live[c]:
-            for k in range(place.shape[0]):
-                e = elongation(dof, place, value, x, c, k)
+            for k in range(springs.place.shape[0]):
+                e = elongation(springs, x, c, k)
                 for i in range(TOUCHED):
-                    if chosen[dof[c, place[k, i]]]:
-                        total += e * value[k, i]
+                    if chosen[springs.dof[c, springs.place[k, i]]]:
+                        total += e * springs.value[k, i]
     return total

@@ -17,7 +17,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from lattice.assembly import assemble, in_plane_springs, out_of_plane_springs
-from lattice.grid import Array, Grid, IntArray
+from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.stiffness import Springs
 
@@ -59,7 +59,7 @@ def held_in_plane(grid: Grid, supports: Mapping[str, str]) -> IntArray:
     return np.sort(np.concatenate((2 * nodes, 2 * nodes + 1)))
 
 
-def ice_area(grid: Grid, intact: np.ndarray | None = None) -> Array:
+def ice_area(grid: Grid, intact: BoolArray | None = None) -> Array:
     """Area of intact ice that belongs to each node, a quarter of each of its cells, (nodes,) [m2]."""
     cells = grid.cell_nodes if intact is None else grid.cell_nodes[intact]
     corners: Array = np.bincount(cells.ravel(), minlength=grid.nodes).astype(np.float64)
@@ -67,7 +67,7 @@ def ice_area(grid: Grid, intact: np.ndarray | None = None) -> Array:
 
 
 def out_of_plane_stiffness(
-    grid: Grid, ice: Ice, springs: Springs, intact: np.ndarray | None = None, k_f: float | None = None
+    grid: Grid, ice: Ice, springs: Springs, intact: BoolArray | None = None, k_f: float | None = None
 ) -> sp.csc_matrix:
     """Springs of (2.2), (2.10), (2.12) plus the Kelvin foundation rho_w g under the intact ice (2.3.2), (3n, 3n)."""
     K = assemble(grid, out_of_plane_springs(springs, grid.d), intact)
@@ -76,7 +76,7 @@ def out_of_plane_stiffness(
     return (K + sp.diags(buoyancy)).tocsc()
 
 
-def in_plane_stiffness(grid: Grid, springs: Springs, intact: np.ndarray | None = None) -> sp.csc_matrix:
+def in_plane_stiffness(grid: Grid, springs: Springs, intact: BoolArray | None = None) -> sp.csc_matrix:
     """Springs of chapter 3, (2n, 2n)."""
     return assemble(grid, in_plane_springs(springs), intact)
 

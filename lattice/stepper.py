@@ -13,25 +13,36 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 from scipy.sparse.linalg import eigsh
 
 from lattice.compiled import compiled
 from lattice.grid import Array
 
 
+class Pattern(NamedTuple):
+    """Stiffness and damping on one sparsity pattern, row after row."""
+
+    begin: NDArray[np.int32]  #: (n + 1,) where each row begins
+    column: NDArray[np.int32]  #: (entries,)
+    K: Array  #: (entries,) [N/m]
+    C: Array  #: (entries,) [N s/m]
+
+
 @compiled()
-def advance(indptr, indices, K, C, m, q, v, F, dF, dt, steps):
-    """``steps`` leapfrog steps of q, v (n,) in place; the load grows by dF per second; K and C share the pattern."""
+def advance(on: Pattern, m: Array, q: Array, v: Array, F: Array, dF: Array, dt: float, steps: int) -> None:
+    """``steps`` leapfrog steps of q, v (n,) in place; the load F (n,) grows by dF (n,) per second."""
     force = np.empty_like(q)
     for step in range(steps):
         t = step * dt
         for i in range(q.size):
             total = F[i] + t * dF[i]
-            for k in range(indptr[i], indptr[i + 1]):
-                total -= K[k] * q[indices[k]] + C[k] * v[indices[k]]
+            for k in range(on.begin[i], on.begin[i + 1]):
+                total -= on.K[k] * q[on.column[k]] + on.C[k] * v[on.column[k]]
             force[i] = total
         for i in range(q.size):
             v[i] += dt * force[i] / m[i]
@@ -91,10 +102,9 @@ class Stepper:
         n = K.shape[0]
         both = (_ones(K) + _ones(C)).tocsr()
         both.sort_indices()
-        self._pattern = both.indptr, both.indices
         rows = np.repeat(np.arange(n), np.diff(both.indptr))
-        self._K = np.asarray(K[rows, both.indices]).ravel()
-        self._C = np.asarray(C[rows, both.indices]).ravel()
+        values = (np.asarray(A[rows, both.indices]).ravel() for A in (K, C))
+        self._pattern = Pattern(both.indptr, both.indices, *values)
 
     def start(self, q: Array, velocity: Array, F: Array) -> None:
         """Displacement and velocity at the same instant t; v goes back by half a step."""
@@ -108,13 +118,13 @@ class Stepper:
             n = min(block or steps, steps - done)
             F = load(self.t)
             dF = (load(self.t + n * self.dt) - F) / (n * self.dt)
-            advance(*self._pattern, self._K, self._C, self.m, self.q, self.v, F, dF, self.dt, n)
+            advance(self._pattern, self.m, self.q, self.v, F, dF, self.dt, n)
             self.t += n * self.dt
             done += n
 
     def velocity(self, F: Array) -> Array:
         """Velocity at the time t, from half a step before [m/s]."""
-        return self.v + 0.5 * self.dt * (F - self.K @ self.q - self.C @ self.v) / self.m
+        return np.asarray(self.v + 0.5 * self.dt * (F - self.K @ self.q - self.C @ self.v) / self.m)
 
     def energy(self, F: Array) -> float:
         """Kinetic plus elastic energy (springs and buoyancy) at the time t [J]."""

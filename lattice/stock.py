@@ -14,6 +14,10 @@ class Work:
     work: float = 0.0
     push: float = 0.0
 
+    def at(self, drift: float) -> float:
+        """Work that a fixed observer sees when the frame drifts [J]."""
+        return self.work + drift * self.push
+
     def add(self, time: float, force: Array, v: Array) -> None:
         """``time`` [s] of forces (m, k) [N], the first along x, on points with velocities (m, k)."""
         self.work += time * float((force * v).sum())
@@ -32,6 +36,7 @@ class Stock:
 
     @property
     def energy(self) -> float:
+        """For an observer who drifts with the ice [J]."""
         return self.elastic + self.kinetic + self.foundation
 
     def kinetic_at(self, drift: float) -> float:
@@ -39,6 +44,7 @@ class Stock:
         return self.kinetic + drift * self.momentum + 0.5 * self.mass * drift**2
 
     def add(self, other: Stock) -> None:
+        """Takes in what some more ice has."""
         for name in ("elastic", "foundation", "kinetic", "momentum", "mass"):
             setattr(self, name, getattr(self, name) + getattr(other, name))
 

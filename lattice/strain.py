@@ -1,16 +1,55 @@
 """Strain of the cells of the lattice, Appendices 2 and 3: what every failure criterion reads.
 
 A positive curvature stretches the top (the thesis, with its rotation reversed, has the minus sign there): downward
-bending, the tip of a cantilever pushed down, stretches the top.
+bending, the tip of a cantilever pushed down, stretches the top. Strains are those of the connections divided by the
+cell size. The mean rotation of the cell is taken out of the shear strains, so that a floe that turns does not fail by
+turning; in the thesis's own cases nothing changes.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
+from lattice.compiled import compiled
 from lattice.grid import Array, Grid, IntArray
+
+
+class Strains(NamedTuple):
+    """Membrane strain and curvature of some cells; parallel connections are averaged."""
+
+    e11: Array  #: (cells,) [-]
+    e22: Array  #: (cells,) [-]
+    e12: Array  #: (cells,) [-]
+    k11: Array  #: (cells,) curvature [1/m]
+    k22: Array  #: (cells,) [1/m]
+    k12: Array  #: (cells,) [1/m]
+
+    def bending_only(self) -> Strains:
+        """The same curvature without membrane strain."""
+        none = np.zeros_like(self.e11)
+        return Strains(none, none, none, self.k11, self.k22, self.k12)
+
+
+@compiled()
+def mean_strains(cell_nodes: IntArray, d: float, u: Array, q: Array) -> Strains:
+    """From node displacements u (n, 2) [m] and q (n, 3) = w [m], phi_x, phi_y [rad]; ``cell_nodes`` (cells, 4)."""
+    cells = cell_nodes.shape[0]
+    e11, e22, e12 = np.empty(cells), np.empty(cells), np.empty(cells)
+    k11, k22, k12 = np.empty(cells), np.empty(cells), np.empty(cells)
+    for c in range(cells):
+        n0, n1, n2, n3 = cell_nodes[c, 0], cell_nodes[c, 1], cell_nodes[c, 2], cell_nodes[c, 3]
+        half = 0.5 / d
+        e11[c] = (u[n1, 0] - u[n0, 0] + u[n3, 0] - u[n2, 0]) * half
+        e22[c] = (u[n2, 1] - u[n0, 1] + u[n3, 1] - u[n1, 1]) * half
+        e12[c] = 0.5 * (u[n1, 1] - u[n0, 1] + u[n3, 1] - u[n2, 1] + u[n2, 0] - u[n0, 0] + u[n3, 0] - u[n1, 0]) * half
+        k11[c] = (q[n1, 1] - q[n0, 1] + q[n3, 1] - q[n2, 1]) * half
+        k22[c] = (q[n2, 2] - q[n0, 2] + q[n3, 2] - q[n1, 2]) * half
+        k12[c] = 0.5 * (q[n1, 2] - q[n0, 2] + q[n3, 2] - q[n2, 2] + q[n2, 1] - q[n0, 1] + q[n3, 1] - q[n1, 1]) * half
+    return Strains(e11, e22, e12, k11, k22, k12)
 
 
 @dataclass(frozen=True)
@@ -24,7 +63,7 @@ class Connections:
 
     @classmethod
     def of(cls, field: Array, d: float) -> Connections:
-        """From the vector (x, y) at the four nodes of each cell, (cells, 4, 2); (A.2.13)-(A.2.16), (A.3.13)-(A.3.16)"""
+        """Of the vector (x, y) at the four nodes of each cell, (cells, 4, 2); (A.2.13)-(A.2.16), (A.3.13)-(A.3.16)."""
         along_x = (field[:, [1, 3]] - field[:, [0, 2]]) / d
         along_y = (field[:, [2, 3]] - field[:, [0, 1]]) / d
         return cls(along_x[..., 0], along_y[..., 1], along_x[..., 1], along_y[..., 0])
@@ -34,47 +73,55 @@ class Connections:
         turn = 0.5 * (self.s12.mean(axis=1) - self.s21.mean(axis=1))[:, None]
         return Connections(self.n11, self.n22, self.s12 - turn, self.s21 + turn)
 
-    def tensor(self) -> Array:
-        """Averages of parallel connections: 11, 22 and the symmetric 12, (cells, 3)."""
-        shear = 0.5 * (self.s12.mean(axis=1) + self.s21.mean(axis=1))
-        return np.column_stack((self.n11.mean(axis=1), self.n22.mean(axis=1), shear))
-
 
 @dataclass(frozen=True)
 class CellState:
-    """Strain of the cells: what every criterion reads."""
+    """Displacement of the nodes of some cells; their strains are worked out when a criterion first asks."""
 
-    membrane: Connections  #: [-]
-    bending: Connections  #: [1/m]
-    shear: Array  #: elongation of the four out-of-plane shear springs over d, (cells, 4) [-]
-    diagonal: Array  #: strain of the two diagonals, (A.2.17), (A.2.18), (cells, 2) [-]
+    nodes: IntArray  #: (cells, 4) as `Grid.cell_nodes`
+    u: Array  #: (nodes of the grid, 2) [m]
+    q: Array  #: (nodes of the grid, 3) w [m], phi_x, phi_y [rad]
     d: float  #: cell size [m]
+    limit: Array | None = None  #: (cells,) of the tensile criteria where cells are beside crack tips [Pa]
 
     @classmethod
-    def of(cls, grid: Grid, u: Array, q: Array, cells: IntArray | None = None) -> CellState:
-        """From u (nodes, 2) and q = (w, phi_x, phi_y) (nodes, 3), for the given cells or all."""
-        nodes = grid.cell_nodes if cells is None else grid.cell_nodes[cells]
-        U, Q, d = u[nodes], q[nodes], grid.d
+    def of(cls, grid: Grid, u: Array, q: Array, cells: IntArray | None = None, limit: Array | None = None) -> CellState:
+        """The given cells or all, from u (nodes, 2) and q = (w, phi_x, phi_y) (nodes, 3)."""
+        return cls(grid.cell_nodes if cells is None else grid.cell_nodes[cells], u, q, grid.d, limit)
+
+    def limit_or(self, strength: float) -> Array | float:
+        """The tensile limit of each cell, or this strength [Pa] where the state is judged without a sheet around."""
+        return strength if self.limit is None else self.limit
+
+    @cached_property
+    def strains(self) -> Strains:
+        """Averages over parallel connections."""
+        found: Strains = mean_strains(self.nodes, self.d, np.ascontiguousarray(self.u), np.ascontiguousarray(self.q))
+        return found
+
+    @cached_property
+    def membrane(self) -> Connections:
+        """Strain of each connection, without the rotation of the cell [-]."""
+        return Connections.of(self.u[self.nodes], self.d).without_rotation()
+
+    @cached_property
+    def bending(self) -> Connections:
+        """Curvature of each connection [1/m]."""
+        return Connections.of(self.q[self.nodes][..., 1:], self.d)
+
+    @cached_property
+    def diagonal(self) -> Array:
+        """Strain of the two diagonals, (A.2.17), (A.2.18), (cells, 2) [-]."""
+        U = self.u[self.nodes]
         d1, d2 = U[:, 3] - U[:, 0], U[:, 1] - U[:, 2]
-        diagonal = np.column_stack((d1[:, 0] + d1[:, 1], d2[:, 0] - d2[:, 1])) / (2.0 * d)
-        return cls(Connections.of(U, d).without_rotation(), Connections.of(Q[..., 1:], d), _shear(Q, d), diagonal, d)
+        return np.column_stack((d1[:, 0] + d1[:, 1], d2[:, 0] - d2[:, 1])) / (2.0 * self.d)
 
-
-def _shear(Q: Array, d: float) -> Array:
-    """Elongations (2.3) over d of the axial connections 1-2, 3-4, 1-3, 2-4, (cells, 4)."""
-    springs = ((0, 1, 0), (2, 3, 0), (0, 2, 1), (1, 3, 1))
-    w, phi = Q[..., 0], Q[..., 1:]
-    return np.column_stack([(w[:, b] - w[:, a]) / d + 0.5 * (phi[:, a, i] + phi[:, b, i]) for a, b, i in springs])
-
-
-def circle(tensor: Array) -> tuple[Array, Array]:
-    """Mean and radius of Mohr's circle, (4.1), (4.2)."""
-    mean = 0.5 * (tensor[:, 0] + tensor[:, 1])
-    return mean, np.hypot(tensor[:, 0] - mean, tensor[:, 2])
-
-
-def circle_of_connections(c: Connections) -> tuple[Array, Array]:
-    """Mean and radius averaged over the four connections beside a discontinuity, (4.24), (4.25)."""
-    mean = 0.25 * (c.n11.sum(axis=1) + c.n22.sum(axis=1))
-    radius = np.hypot(c.n11 - mean[:, None], c.s12).sum(axis=1) + np.hypot(c.n22 - mean[:, None], c.s21).sum(axis=1)
-    return mean, 0.25 * radius
+    @cached_property
+    def shear(self) -> Array:
+        """Elongations (2.3) of the out-of-plane shear springs 1-2, 3-4, 1-3, 2-4 over d, (cells, 4) [-]."""
+        springs = ((0, 1, 0), (2, 3, 0), (0, 2, 1), (1, 3, 1))
+        Q = self.q[self.nodes]
+        w, phi = Q[..., 0], Q[..., 1:]
+        return np.column_stack(
+            [(w[:, b] - w[:, a]) / self.d + 0.5 * (phi[:, a, i] + phi[:, b, i]) for a, b, i in springs]
+        )

@@ -20,7 +20,7 @@ OUTWARD = np.array([[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]])  #: sid
 def in_cell_axes(principal: Array, alpha: float) -> Array:
     """Tensor of principal values (xx, yy) in the axes of a cell turned by alpha, (2, 2)."""
     turn = np.array([[np.cos(alpha), np.sin(alpha)], [-np.sin(alpha), np.cos(alpha)]])
-    return turn @ np.diag(principal) @ turn.T
+    return np.asarray(turn @ np.diag(principal) @ turn.T)
 
 
 def cell_in_stress(ice: Ice, springs: Springs, principal: Array, alpha: float, d: float = 1.0) -> CellState:

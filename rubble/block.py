@@ -1,73 +1,73 @@
-"""A block of broken ice: a prism with its body in pymunk, its wetted edges, and its state across the section."""
+"""A block of broken ice: a prism with its body in pymunk, its wetted edges, and its lateral state."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import atan2, cos, sin
+from math import cos, sin
 
 import numpy as np
 import pymunk
 
-from rubble.friction import ICE
-from rubble.geometry import Array, clip, contiguous, is_convex, moments, place
-from rubble.phases import ROTATING
+from rubble.arrays import Array, Record
+from rubble.bodies import FORCE, LATERAL, LOAD
+from rubble.geometry import area_moments, clip, contiguous, is_convex, place
+from rubble.handlers import ICE
 from rubble.physics import RubblePhysics
-from rubble.prism import inertia, strips, wetted_edges
+from rubble.pressure import water_energy
+from rubble.prism import Prism, make_prism
 
 
-@dataclass(frozen=True, slots=True)
-class Prism:
-    """What follows from a block's outline and its strips; body frame, about the centre of mass."""
+@dataclass(frozen=True)
+class Slab:
+    """Ice that is to become a block, where it lies in the section."""
 
-    polygon: Array  #: (k, 2) outline, counter-clockwise
-    edges: Array  #: (e, 8) wetted edges, see `water`
-    mass: float  #: true mass [kg]
-    inertia: float  #: true moment of inertia about the y axis [kg m^2]
-    width: float  #: mean extent along y [m]
-    area: float  #: of the outline [m^2]
-    reach: float  #: of the farthest corner from the centre [m]
-    long_axis: float  #: direction of the long axis [rad]
-    slender: bool  #: long and short extent differ by more than 20 %; else both axes count as long
-    parts: list[Array]  #: strips of the outline
-    cuts: Array  #: (s + 1,) where the strips begin and end along body x [m]
-    widths: Array  #: (s,) their widths along y [m]
+    outline: Array  #: (k, 2) convex, in world x, z [m]
+    cuts: Array  #: (s + 1,) places along its axis between which its width is constant: ``x cos + z sin`` [m]
+    widths: Array  #: (s,) along y between the cuts [m]
+    density: float  #: [kg/m^3]
+    angle: float = 0.0  #: of its axis from x [rad]
+
+
+def _unknown() -> Record:
+    pressure = np.zeros(1, FORCE)[0]
+    pressure["x"] = pressure["z"] = pressure["moment"] = np.nan
+    return pressure
 
 
 @dataclass(slots=True, eq=False)
 class Block:
-    """One block: its prism, its body in pymunk, and its state across the section."""
+    """One block: its prism, its body in pymunk, and its lateral state."""
 
     id: int  #: number of the block, never reused
     fragment: int  #: number of the fragment it came from
     body: pymunk.Body  #: carries mass + added mass
     shape: pymunk.Poly
     prism: Prism
-    across: Array  #: (2,) y and v_y; of a block in a section a view of the section's table
+    lateral: Record  #: LATERAL; of a block in a section a row of the section's table
     aligned: bool = False  #: its long axis has once aligned with the slope
-    phase: int = ROTATING
-    flooded: float = 1.0  #: share of its head of water that the top carries
-    load: Array = field(default_factory=lambda: np.zeros(3))  #: mean force on the structure over the last window [N]
-    #: force and moment of the water's pressure in the last sub-step, nan if unknown [N, N, N m]
-    pressure: Array = field(default_factory=lambda: np.full(3, np.nan))
+    sliding: bool = False  #: its phase: rotating before, sliding after it has aligned and left the sheet
+    flooded: float = 1.0  #: part of its head of water that the top carries
+    pressure: Record = field(default_factory=_unknown)  #: FORCE of the water's pressure in the last sub-step
+    load: Record = field(default_factory=lambda: np.zeros(1, LOAD)[0])  #: LOAD on the structure in the last window [N]
     thrust: tuple[float, float, float] = (0.0, 0.0, 0.0)  #: constant force and moment beside the weight [N, N, N m]
 
     @property
     def y(self) -> float:
-        """Place across the sections [m]."""
-        return float(self.across[0])
+        """Lateral place [m]."""
+        return float(self.lateral["y"])
 
     @y.setter
     def y(self, value: float) -> None:
-        self.across[0] = value
+        self.lateral["y"] = value
 
     @property
     def v_y(self) -> float:
-        """Speed across the sections [m/s]."""
-        return float(self.across[1])
+        """Lateral speed [m/s]."""
+        return float(self.lateral["v_y"])
 
     @v_y.setter
     def v_y(self, value: float) -> None:
-        self.across[1] = value
+        self.lateral["v_y"] = value
 
     @property
     def mass(self) -> float:
@@ -75,60 +75,56 @@ class Block:
         return self.prism.mass
 
     @property
+    def velocity(self) -> Array:
+        """Of the centre of mass (3,) [m/s]."""
+        return np.array([self.body.velocity.x, self.v_y, self.body.velocity.y])
+
+    @property
+    def momentum(self) -> Array:
+        """True mass times velocity (3,) [N s]."""
+        return self.mass * self.velocity
+
+    @property
     def outline(self) -> Array:
         """(k, 2) corners in world x, z [m]."""
-        return place(self.prism.polygon, *self.body.position, self.body.angle, 0.0, 0.0)
+        out: Array = place(self.prism.polygon, *self.body.position, self.body.angle, 0.0, 0.0)
+        return out
 
 
 def make_block(
     number: int,
+    fragment: int,
     physics: RubblePhysics,
-    polygon: Array,
-    cuts: Array,
-    widths: Array,
-    density: float,
-    velocity: tuple[float, float],
+    slab: Slab,
+    velocity: tuple[float, float, float],
     omega: float,
     y: float,
-    fragment: int,
-    angle: float,
     flooded: float = 1.0,
 ) -> Block:
-    """A block from its outline in world coordinates; ``cuts`` (s + 1,) are places along the axis at ``angle`` [m]."""
-    prism, (cx, cz) = make_prism(place(_checked(polygon), 0.0, 0.0, -angle, 0.0, 0.0), cuts, widths, density)
+    """A block from its outline in world coordinates; ``velocity`` (x, y, z) [m/s], ``omega`` [rad/s]."""
+    angle = slab.angle
+    own = place(_checked(slab.outline), 0.0, 0.0, -angle, 0.0, 0.0)
+    prism, (cx, cz) = make_prism(own, slab.cuts, slab.widths, slab.density)
     body = pymunk.Body(1.0, 1.0)
-    _set_inertia(body, prism, physics, density)
+    water = physics.rho_w / slab.density
+    body.mass = prism.mass * (1.0 + physics.added_mass * water)
+    body.moment = prism.inertia * (1.0 + physics.added_inertia * water)
     body.position = (cos(angle) * cx - sin(angle) * cz, sin(angle) * cx + cos(angle) * cz)
-    body.angle, body.velocity, body.angular_velocity = angle, (float(velocity[0]), float(velocity[1])), float(omega)
+    body.angle, body.velocity, body.angular_velocity = angle, (float(velocity[0]), float(velocity[2])), float(omega)
     shape = pymunk.Poly(body, [(float(a), float(b)) for a, b in prism.polygon])
     shape.elasticity, shape.collision_type = physics.restitution**0.5, ICE
-    return Block(number, fragment, body, shape, prism, np.array([y, 0.0]), flooded=flooded)
+    lateral = np.zeros(1, LATERAL)[0]
+    lateral["y"], lateral["v_y"] = y, velocity[1]
+    return Block(number, fragment, body, shape, prism, lateral, flooded=flooded)
 
 
-def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[Prism, tuple[float, float]]:
-    """The prism of an outline turned so that its axis lies along x, and where its centre of mass was."""
-    cuts, widths = _checked_strips(own, cuts, widths)
-    parts = strips(own, cuts, widths)
-    volume, cx, cz, polar = inertia(parts, widths)
-    shift = np.array([cx, cz])
-    parts, own, area = [p - shift for p in parts], own - shift, float(moments(own)[0])
-    edges = wetted_edges(parts, cuts - cx, widths)
-    axis, slender = _long_axis(own)
-    prism = Prism(
-        own,
-        edges,
-        density * volume,
-        density * polar,
-        volume / area,
-        area,
-        float(np.hypot(*own.T).max()),
-        axis,
-        slender,
-        parts,
-        cuts - cx,
-        widths,
-    )
-    return prism, (cx, cz)
+def energy_of(block: Block, physics: RubblePhysics) -> tuple[float, float]:
+    """Kinetic energy of a block, and its energy of weight and water [J]; see `energy`."""
+    body, edges = block.body, block.prism.edges
+    turning = 0.5 * body.moment * body.angular_velocity**2 if np.isfinite(body.moment) else 0.0
+    water = water_energy(edges, 0, len(edges), body.position.y, body.angle, physics.rho_w * physics.g)
+    kinetic = 0.5 * body.mass * (float(body.velocity.length_squared) + block.v_y**2) + turning
+    return float(kinetic), float(block.mass * (physics.g * body.position.y - physics.afloat) + water)
 
 
 def cut_block(block: Block, nx: float, nz: float, c: float) -> float:
@@ -138,7 +134,7 @@ def cut_block(block: Block, nx: float, nz: float, c: float) -> float:
     """
     density = block.mass / (block.prism.area * block.prism.width)
     rest = clip(block.prism.polygon, nx, nz, c)
-    if len(rest) < 3 or moments(rest)[0] < 1e-6 * block.prism.area:
+    if len(rest) < 3 or area_moments(rest).area < 1e-6 * block.prism.area:
         return 0.0
     old = block.prism
     block.prism, (cx, cz) = make_prism(_distinct(rest), block.prism.cuts, block.prism.widths, density)
@@ -152,12 +148,6 @@ def cut_block(block: Block, nx: float, nz: float, c: float) -> float:
     return old.mass - block.mass
 
 
-def _set_inertia(body: pymunk.Body, prism: Prism, physics: RubblePhysics, density: float) -> None:
-    water = physics.rho_w / density
-    body.mass = prism.mass * (1.0 + physics.added_mass * water)
-    body.moment = prism.inertia * (1.0 + physics.added_inertia * water)
-
-
 def _distinct(polygon: Array) -> Array:
     """Without corners that fall together."""
     gap = np.abs(polygon - np.roll(polygon, 1, axis=0)).max(axis=1)
@@ -166,35 +156,6 @@ def _distinct(polygon: Array) -> Array:
 
 def _checked(polygon: Array) -> Array:
     out = contiguous(polygon)
-    if not is_convex(out) or moments(out)[0] <= 0:
+    if not is_convex(out) or area_moments(out).area <= 0:
         raise ValueError(f"a block's outline with {len(out)} corners is not convex; split it into convex parts")
     return out
-
-
-def _checked_strips(polygon: Array, cuts: Array, widths: Array) -> tuple[Array, Array]:
-    """Strips as arrays, the outer cuts moved to the block's ends so that no ice is left out."""
-    cuts, widths = np.array(cuts, dtype=np.float64), np.array(widths, dtype=np.float64)
-    if len(cuts) != len(widths) + 1 or (np.diff(cuts) <= 0).any() or not (widths > 0).all():
-        raise ValueError(f"strips with cuts {cuts} and widths {widths}; give ascending cuts, one more than widths > 0")
-    lo, hi = polygon[:, 0].min(), polygon[:, 0].max()
-    keep = (cuts[1:] > lo) & (cuts[:-1] < hi)
-    if not keep.any():
-        raise ValueError(
-            f"strips from {cuts[0]:g} to {cuts[-1]:g} m miss the block from {lo:g} to {hi:g} m; "
-            "cuts are places along the block's axis"
-        )
-    first, last = int(np.argmax(keep)), len(keep) - int(np.argmax(keep[::-1]))
-    cuts, widths = cuts[first : last + 1].copy(), widths[first:last].copy()
-    cuts[0], cuts[-1] = lo, hi
-    return cuts, widths
-
-
-def _long_axis(polygon: Array) -> tuple[float, bool]:
-    """Direction of the outline's longer principal axis [rad], and whether it is clearly the longer one."""
-    edge = np.roll(polygon, -1, axis=0) - polygon
-    length = np.hypot(*edge.T)
-    middle = polygon + edge / 2
-    middle = middle - (length @ middle) / length.sum()
-    tensor = (middle * length[:, None]).T @ middle + (edge * length[:, None]).T @ edge / 12
-    values, vectors = np.linalg.eigh(tensor)
-    return atan2(float(vectors[1, 1]), float(vectors[0, 1])), bool(values[1] > 1.44 * values[0])

@@ -18,7 +18,10 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba import cfunc, config, njit
+from numba import cfunc, njit
+
+config: Any = numba.config  #: made when numba is loaded, so that its names are not known before
+_njit: Any = njit  #: its types do not know a signature or options that are passed on
 
 PACKAGE = Path(__file__).parent
 KEPT = 3  #: older folders that stay, for branches between which one goes to and fro
@@ -53,7 +56,7 @@ _FOLDER = cache_folder(PACKAGE)
 
 def compiled(*signature: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there."""
-    return lambda kernel: _kept(njit(*signature, cache=True, **options), kernel)
+    return lambda kernel: _kept(_njit(*signature, cache=True, **options), kernel)
 
 
 def callback(signature: str) -> Callable[[Callable[..., Any]], Any]:

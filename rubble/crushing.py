@@ -12,38 +12,37 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubble.block import Block, cut_block
+from rubble.arrays import Array
+from rubble.block import Block, cut_block, energy_of
 from rubble.compiled import compiled
-from rubble.geometry import Array
+from rubble.lost import Lost
 from rubble.section import Section
-from rubble.stock import energy_of
+
+FROM_REST = 0.5  #: distance over speed times time, of a body that is moved from rest by a constant force
 
 
-def crush(section: Section, window: float) -> tuple[float, Array, float]:
-    """Cut the overloaded blocks of a section after a window [s]; returns crushed mass [kg], its momentum (3,) and its
-    energy [J].
-    """
-    physics, mass, momentum, energy = section.physics, 0.0, np.zeros(3), 0.0
-    for row in section.heavy[1 : 1 + int(section.heavy[0, 0])]:
-        needed = float(row[3]) / window / physics.contact_strength  # contact area [m2]
-        along = float(np.hypot(row[4], row[5]))
+def crush(section: Section, window: float) -> Lost:
+    """Cut the overloaded blocks of a section after a window [s]; returns what they have lost."""
+    physics, lost = section.physics, Lost()
+    for row in section.overloads:
+        push = float(row["push"])
+        needed = push / window / physics.contact_strength  # contact area [m2]
+        direction = np.array([row["push_x"], row["push_z"]])
+        along = float(np.hypot(*direction))
         if along == 0.0:
             continue  # pressed from opposite sides alike: no side to cut back
-        ends = [
-            (section.blocks[int(row[k])], sign * row[4:6] / along) for k, sign in ((0, 1.0), (1, -1.0)) if row[k] >= 0
-        ]
+        slots = ((int(row["a"]), 1.0), (int(row["b"]), -1.0))
+        ends = [(section.blocks[slot], sign * direction / along) for slot, sign in slots if slot >= 0]
         lacking, depth, block, normal = max(
-            ((*depth_for(b, n, needed, float(row[3]), window), b, n) for b, n in ends), key=lambda found: found[0]
+            ((*depth_for(b, n, needed, push, window), b, n) for b, n in ends), key=lambda found: found[0]
         )
         if lacking > physics.slop:
-            before = np.array([block.body.velocity.x, block.v_y, block.body.velocity.y])
-            had = sum(energy_of(block, physics))
-            lost = _cut(block, normal, depth)
-            mass, momentum = mass + lost, momentum + lost * before
-            energy += had - sum(energy_of(block, physics))
-    if mass > 0.0:
+            velocity, had = block.velocity, sum(energy_of(block, physics))
+            mass = _cut(block, normal, depth)
+            lost.take(mass, mass * velocity, had - sum(energy_of(block, physics)))
+    if lost.mass > 0.0:
         section.changed()
-    return mass, momentum, energy
+    return lost
 
 
 @compiled("float64(float64[:, ::1], float64, float64, float64)", nogil=True)
@@ -65,21 +64,24 @@ def _chord(polygon: Array, nx: float, nz: float, at: float) -> float:
 
 
 def depth_for(block: Block, normal: Array, needed: float, impulse: float, window: float) -> tuple[float, float]:
-    """How far a block must be cut back along the outward ``normal`` (2,) for a contact of ``needed`` area, and how far
-    it recedes in this window [m]; the first is infinite if no section of the block is wide enough.
+    """How far a block must be cut back, and how far it recedes in this window [m].
+
+    Cut along the outward ``normal`` (2,) for a contact of ``needed`` area [m2] under an ``impulse`` [N s]. The first is
+    infinite if no section of the block is wide enough.
     """
     c, s = np.cos(block.body.angle), np.sin(block.body.angle)
     nx, nz = float(c * normal[0] + s * normal[1]), float(-s * normal[0] + c * normal[1])
     chord = needed / block.prism.width
     lacking, there = _cut_depth(block.prism.polygon, nx, nz, chord)
-    pace = 0.5 * impulse * (1.0 - min(there / chord, 1.0)) / block.body.mass * window
+    pace = FROM_REST * impulse * (1.0 - min(there / chord, 1.0)) / block.body.mass * window
     return lacking, min(lacking, float(pace))
 
 
 @compiled("UniTuple(float64, 2)(float64[:, ::1], float64, float64, float64)", nogil=True)
 def _cut_depth(polygon: Array, nx: float, nz: float, chord: float) -> tuple[float, float]:
-    """Depth below the farthest corner along n at which a convex polygon is ``chord`` wide (inf: nowhere), and its width
-    at that corner.
+    """Depth below the farthest corner along n at which a convex polygon is ``chord`` wide, and its width there.
+
+    That is: at the corner. The depth is infinite if the polygon is nowhere so wide.
     """
     reach = np.sort(polygon[:, 0] * nx + polygon[:, 1] * nz)[::-1]
     there = _chord(polygon, nx, nz, reach[0])

@@ -1,8 +1,8 @@
 """Rubble that is there before the run: a stated volume of blocks settled under the ice in front of the structure.
 
 Blocks of the sheet's thickness and random length rise from below into the corner between sheet and structure and come
-to rest there. Their lengths, tilts and places follow from the seed alone. While they settle they do not move across
-the sections. Porosity and slope are results: nothing is fitted to them.
+to rest there. Their lengths, tilts and places follow from the seed alone. While they settle
+they do not move laterally. Porosity and slope are results: nothing is fitted to them.
 """
 
 from __future__ import annotations
@@ -12,8 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rubble.geometry import Array, place
-from rubble.layer import Domain, RubbleLayer
+from rubble.arrays import Array
+from rubble.block import Slab
+from rubble.domain import Domain
+from rubble.energy import mechanical_energy
+from rubble.geometry import place
+from rubble.layer import RubbleLayer
 
 POROSITY, SLOPE = 0.3, np.radians(35.0)  #: of the heap that the blocks are spread for; the result may differ
 CALM = 1e-6  #: kinetic over potential energy of a settled pile
@@ -61,13 +65,13 @@ def rest(
     layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], *, longest: float = 300.0, window: float = 0.5
 ) -> Pile:
     """Let the blocks come to rest under the sheet as it is now; arguments as in `settle`."""
-    domain, layer.domain, layer.hold_across = layer.domain, Domain(), True
+    domain, layer.domain, layer.hold_lateral = layer.domain, Domain(), True
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
     calm, steps = 1.0, round(window / layer.physics.substep)
     while calm > CALM and layer.time < longest:
         layer.advance(steps)
         calm = _calm(layer, fronts)
-    time, layer.time, layer.hold_across, layer.domain = layer.time, 0.0, False, domain
+    time, layer.time, layer.hold_lateral, layer.domain = layer.time, 0.0, False, domain
     layer.set_form_drag(layer.physics.form_drag)
     if calm > CALM:
         raise RuntimeError(
@@ -99,23 +103,18 @@ def _fill(
         angle = float(random.uniform(-0.5, 0.5) * np.pi)
         box = np.array([(-size, -h), (size, -h), (size, h), (-size, h)]) / 2.0
         middle = x * np.cos(angle) + z * np.sin(angle)
-        layer.add_block(
-            key,
+        slab = Slab(
             place(box, x, z, angle, 0.0, 0.0),
             middle + np.array([-size, size]) / 2.0,
             np.array([width]),
             layer.physics.rho_i,
-            (0.0, 0.0),
-            0.0,
-            layer.centre(key),
-            -1,
             angle,
-            flooded=True,
         )
+        layer.add_block(key, slab, fragment=-1, flooded=True)
 
 
 def _calm(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]]) -> float:
-    energy, t = layer.energy, layer.table()
+    energy, t = mechanical_energy(layer), layer.table()
     top = np.mean([z for _, z in fronts.values()])
     lift = (layer.physics.rho_w / layer.physics.rho_i - 1.0) * layer.physics.g
     return (energy["kinetic"] + energy["added"]) / max(lift * float(t.mass @ np.abs(t.position[:, 2] - top)), 1.0)
@@ -151,6 +150,7 @@ def measure(
 def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tuple[float, float, float, float] | None:
     """Ice and pore area [m^2], slope of the rear flank [rad] and depth below the sheet [m] of one section."""
     section = layer.section(key)
+    solids = section.cut.polygons
     outlines = [b.outline for b in section.blocks]
     if not outlines:
         return None
@@ -159,7 +159,7 @@ def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tup
     z = np.arange(corners[:, 1].min() + step / 2, top, step)
     gx, gz = np.meshgrid(x, z, indexing="ij")
     covered = np.any([_inside(o, gx, gz) for o in outlines], axis=0)
-    solid = np.any([_inside(s, gx, gz) for s in section.solids], axis=0) if section.solids else np.zeros_like(covered)
+    solid = np.any([_inside(s, gx, gz) for s in solids], axis=0) if solids else np.zeros_like(covered)
     low = np.where(covered.any(axis=1), z[np.argmax(covered, axis=1)], np.nan)
     pores = ~covered & ~solid & (gz >= low[:, None])
     deepest = int(np.nanargmin(low))

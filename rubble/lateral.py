@@ -1,98 +1,111 @@
-"""Motion of blocks across the sections: they clear sideways around the structure.
+"""Lateral motion of blocks, along y: they clear sideways around the structure.
 
-The structure presses a block across with ``N n_y`` and resists with friction against the direction of slip, see
+The structure presses a block laterally with ``N n_y`` and resists with friction against the direction of slip, see
 `friction`; ice around it resists likewise with its own normal forces, and water drags on the side face.
 
-A section's cut of the structure does not recede when a block moves across, as the true face would. Seen in the plane
+A section's cut of the structure does not recede when a block moves along y, as the true face would. Seen in the plane
 the face recedes by ``v_y n_y / n_p``, and the block stays in touch only as long as the ice behind feeds it that fast.
 So the push ends at ``v_y = V n_p / n_y`` with V the speed of the feed: beyond, the block has left the structure.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
+from rubble.arrays import Array, Records, record
 from rubble.block import Block
+from rubble.bodies import Outlines
 from rubble.compiled import compiled
-from rubble.geometry import Array, IntArray, moments, place, submerged
+from rubble.domain import Domain
+from rubble.geometry import area_moments, place, submerged
+from rubble.physics import RATE_DEPENDENT, RubblePhysics
 
-#: sums of `side_steps` [J]: done by the structure's side push, which a section takes from nowhere; lost to friction on
-#: the structure and on ice; lost to drag
-PUSHED, RUBBED, DRAGGED, ACROSS = 0, 1, 3, 4
+#: energy since the start [J]: done by the structure's lateral push, which a section takes from nowhere; lost to
+#: friction on the structure and on ice; lost to drag
+LATERAL_WORK = record("pushed", "rubbed_structure", "rubbed_ice", "dragged")
+#: Coefficient of rate-dependent friction along y. The sums of a window hold the normal impulses on other ice, not the
+#: slip of each contact; blocks that clear move at centimetres per second and more, the upper end of the law, where it
+#: says 0.1 (`friction.rate_dependent`).
+MU_SLIDING = 0.1
 
 
-@compiled(
-    "void(float64, float64, float64, float64, float64[:, ::1], int64[::1], float64[::1], float64[:, ::1], "
-    "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])",
-    nogil=True,
-)
-def side_steps(
-    dt: float,
-    mu_ice: float,
-    half_rho_cd: float,
-    feed: float,
-    polygons: Array,
-    offset: IntArray,
+class Resistance(NamedTuple):
+    """What holds lateral motion back, in a window."""
+
+    dt: float  #: length of the window [s]
+    mu_ice: float  #: on other ice
+    half_rho_cd: float  #: rho_w C_d / 2 [kg/m^3]
+    feed: float  #: V above [m/s]
+
+
+def resistance_of(physics: RubblePhysics, window: float) -> Resistance:
+    """Of a scenario in a window [s]."""
+    mu = MU_SLIDING if physics.mu_ice_ice == RATE_DEPENDENT else float(physics.mu_ice_ice)
+    return Resistance(window, mu, physics.rho_w / 2 * physics.form_drag, float(physics.feed_speed))
+
+
+@compiled(nogil=True)
+def move_laterally(
+    by: Resistance,
+    outlines: Outlines,
     mass: Array,
-    state: Array,
-    sums: Array,
-    side: Array,
-    load: Array,
-    work: Array,
+    state: Records,
+    impulses: Records,
+    lateral: Records,
+    load: Records,
+    work: Records,
 ) -> None:
-    """Move the blocks of a section across by one window; ``load`` (n, 3) becomes the mean force on the structure [N].
+    """Move the blocks of a section along y by one window; ``load`` (n,) becomes the mean force on the structure [N].
 
-    ``sums`` as in `contacts`; ``side`` (2, n): y and v_y, changed here; ``mass`` with added mass; ``half_rho_cd`` =
-    rho_w C_d / 2; ``feed`` V above [m/s]; ``work`` see ACROSS. Backward Euler for friction and drag, so neither turns
-    the motion around.
+    ``impulses`` (n,) are those of the window, ON_BLOCK; ``lateral`` (n,) is changed; ``mass`` (n,) with added mass;
+    ``work`` (1,) LATERAL_WORK. Backward Euler for friction and drag, so neither turns the motion around.
     """
+    dt, corners, offset, sums = by.dt, outlines.corners, outlines.offset, work[0]
     for i in range(mass.shape[0]):
-        load[i, 0], load[i, 1], load[i, 2] = sums[i, 0] / dt, -sums[i, 2] / dt, sums[i, 1] / dt
-        free = side[1, i] + sums[i, 2] / mass[i]
+        j, row, own, force, m = impulses[i], state[i], lateral[i], load[i], mass[i]
+        force.x, force.y, force.z = j.structure_x / dt, -j.lateral / dt, j.structure_z / dt
+        free = own.v_y + j.lateral / m
         if free == 0.0:
             continue
-        across = free * sums[i, 4] / sums[i, 3] if sums[i, 3] > 0.0 else free  # slip v_y / p on the structure
-        slip = np.hypot(state[i, 3], state[i, 4])
-        grip, rub = sums[i, 3] / np.hypot(across, slip), mu_ice * sums[i, 5] / np.hypot(free, slip)
-        v = free * max(0.0, 1.0 - (grip + rub) / mass[i])
-        work[PUSHED] += 0.5 * mass[i] * (free * free - side[1, i] ** 2)
+        on_face = free * j.grip_slip / j.grip if j.grip > 0.0 else free  # slip v_y / p on the structure
+        slip = np.hypot(row.v_x, row.v_z)
+        grip, rub = j.grip / np.hypot(on_face, slip), by.mu_ice * j.ice / np.hypot(free, slip)
+        v = free * max(0.0, 1.0 - (grip + rub) / m)
+        sums.pushed += 0.5 * m * (free * free - own.v_y**2)
         if grip + rub > 0.0:
-            work[RUBBED] += 0.5 * mass[i] * (free * free - v * v) * grip / (grip + rub)
-            work[RUBBED + 1] += 0.5 * mass[i] * (free * free - v * v) * rub / (grip + rub)
-            load[i, 1] += mass[i] * (free - v) / dt * grip / (grip + rub)
-        most = feed * np.hypot(sums[i, 0], sums[i, 1]) / abs(sums[i, 2]) if sums[i, 2] != 0.0 else np.inf
-        if v * sums[i, 2] > 0.0 and abs(v) > max(most, abs(side[1, i])):
-            slower = np.sign(v) * max(most, side[1, i] * np.sign(v))
-            work[PUSHED] -= 0.5 * mass[i] * (v * v - slower * slower)
-            load[i, 1] += mass[i] * (v - slower) / dt
+            sums.rubbed_structure += 0.5 * m * (free * free - v * v) * grip / (grip + rub)
+            sums.rubbed_ice += 0.5 * m * (free * free - v * v) * rub / (grip + rub)
+            force.y += m * (free - v) / dt * grip / (grip + rub)
+        most = by.feed * np.hypot(j.structure_x, j.structure_z) / abs(j.lateral) if j.lateral != 0.0 else np.inf
+        if v * j.lateral > 0.0 and abs(v) > max(most, abs(own.v_y)):
+            slower = np.sign(v) * max(most, own.v_y * np.sign(v))
+            sums.pushed -= 0.5 * m * (v * v - slower * slower)
+            force.y += m * (v - slower) / dt
             v = slower
-        wet = moments(
-            submerged(place(polygons[offset[i] : offset[i + 1]], state[i, 0], state[i, 1], state[i, 2], 0, 0))
-        )
-        side[1, i] = v / (1.0 + dt * half_rho_cd * wet[0] * abs(v) / mass[i])
-        side[0, i] += dt * side[1, i]
-        work[DRAGGED] += 0.5 * mass[i] * (v * v - side[1, i] ** 2)
+        outline = place(corners[offset[i] : offset[i + 1]], row.x, row.z, row.angle, 0, 0)
+        wet = area_moments(submerged(outline)).area
+        own.v_y = v / (1.0 + dt * by.half_rho_cd * wet * abs(v) / m)
+        own.y += dt * own.v_y
+        sums.dragged += 0.5 * m * (v * v - own.v_y**2)
 
 
-@compiled(
-    "bool_(float64[:, ::1], float64[:, ::1], float64, float64, float64, float64, float64, float64)",
-    nogil=True,
-)
-def all_inside(
-    state: Array, side: Array, y: float, half: float, x_min: float, x_max: float, y_max: float, depth: float
-) -> bool:
-    """Whether all blocks are within the section's half width about y and within the domain (`layer.Domain`)."""
-    inside = True
+@compiled(nogil=True)
+def all_inside(state: Records, lateral: Records, y: float, half: float, domain: Domain) -> bool:
+    """Whether all blocks are within the section's half width about y and within the domain."""
     for i in range(state.shape[0]):
-        x, z, at = state[i, 0], state[i, 1], side[0, i]
-        inside = inside and x_min <= x <= x_max and abs(at) <= y_max and z >= -depth and abs(at - y) <= half
-    return inside
+        x, z, at = state[i].x, state[i].z, lateral[i].y
+        held = domain.x_min <= x <= domain.x_max and abs(at) <= domain.y_max and z >= -domain.depth
+        if not (held and abs(at - y) <= half):
+            return False
+    return True
 
 
-def push(block: Block, neighbour: Block | None) -> float:
-    """Plastic impact across: both blocks go on with their common speed; without a neighbour the block stops.
+def collide(block: Block, neighbour: Block | None) -> float:
+    """Plastic impact along y: both blocks go on with their common speed; without a neighbour the block stops.
 
-    Momentum across is kept between blocks; sheet and structure take it up. Returns the energy that is lost [J].
+    Lateral momentum is kept between blocks; sheet and structure take it up. Returns the energy that is lost [J].
     """
     m = float(block.body.mass)
     if neighbour is None:

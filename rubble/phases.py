@@ -4,30 +4,35 @@ from __future__ import annotations
 
 import numpy as np
 
+from rubble.arrays import Records, record
 from rubble.compiled import compiled
-from rubble.geometry import Array, IntArray
+from rubble.cut import distance_to, nearest
 
-ROTATING, SLIDING = 1, 2  #: numbers of `coupling.interface.Phase`
+#: of a block: distance at which a slope counts [m], direction of its long axis [rad], period of that direction [rad]
+AXIS = record("reach", "direction", "period")
+#: whether its long axis has once aligned with a slope, and whether it slides; 0 or 1
+STATUS = record(integers=("aligned", "sliding"))
 
 
-@compiled(
-    "bool_(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[:, ::1], float64, int64[:, ::1])",
-    nogil=True,
-)
-def update_phases(slopes: Array, axes: Array, state: Array, sums: Array, tolerance: float, status: IntArray) -> bool:
-    """Bring ``status`` (n, 2), aligned and phase, up to date; says whether anything has changed.
+@compiled(nogil=True)
+def update_phases(
+    slopes: Records, axes: Records, state: Records, impulses: Records, tolerance: float, status: Records
+) -> bool:
+    """Bring ``status`` (n,) up to date; says whether anything has changed.
 
-    ``slopes`` (n, 2): angle and distance of the nearest slope; ``axes`` (n, 3): distance at which it counts, direction
-    of the long axis, period of that direction; ``state`` as in `water`, ``sums`` as in `contacts`.
+    ``slopes`` are FACEs, at least one; ``impulses`` (n,) are those of the window, ON_BLOCK; ``tolerance`` [rad].
     """
     changed = False
     for i in range(status.shape[0]):
-        if status[i, 1] != ROTATING:
+        own, axis, row = status[i], axes[i], state[i]
+        if own.sliding == 1:
             continue
-        if status[i, 0] == 0 and slopes[i, 1] <= axes[i, 0]:
-            turn, period = axes[i, 1] + state[i, 2] - slopes[i, 0], axes[i, 2]
+        face = slopes[nearest(slopes, row.x, row.z)]
+        if own.aligned == 0 and distance_to(face, row.x, row.z) <= axis.reach:
+            slope, period = np.arctan2(face.z1 - face.z0, face.x1 - face.x0), axis.period
+            turn = axis.direction + row.angle - slope
             if np.abs((turn + period / 2) % period - period / 2) <= tolerance:
-                status[i, 0], changed = 1, True
-        if status[i, 0] == 1 and sums[i, 6] <= 0.0:
-            status[i, 1], changed = SLIDING, True
+                own.aligned, changed = 1, True
+        if own.aligned == 1 and impulses[i].sheet <= 0.0:
+            own.sliding, changed = 1, True
     return changed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
@@ -10,39 +10,64 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
-IntArray = NDArray[np.int64]
 
-#: fields of an arbiter and of a contact point that are read or set, in the order of `offsets`
-ARBITER = ("body_a", "body_b", "count", "contacts", "n", "state", "u")
-CONTACT = ("r1", "r2", "jnAcc", "jtAcc")
-OFFSETS = len(ARBITER) + len(CONTACT) + 1
+class ArbiterLayout(NamedTuple):
+    """Where an arbiter and its contact points keep what is read or set [bytes]; names as in the library."""
+
+    body_a: int
+    body_b: int
+    points: int  #: how many contact points
+    contacts: int
+    n: int
+    u: int
+    r1: int
+    r2: int
+    jn: int
+    jt: int
+    size: int  #: of a contact point
 
 
-def offsets() -> IntArray:
-    """Where arbiter and contact keep these fields, and the size of a contact [bytes]."""
+class BodyLayout(NamedTuple):
+    """Where a body keeps its state, the force on it, and what resists [bytes]."""
+
+    x: int
+    z: int
+    angle: int
+    v_x: int
+    v_z: int
+    omega: int
+    force_x: int
+    force_z: int
+    moment: int
+    inverse_mass: int
+    inverse_inertia: int
+
+
+def arbiter_layout() -> ArbiterLayout:
+    """Where arbiter and contact of the installed library keep their fields."""
     arbiter, contact = ffi.typeof("cpArbiter"), ffi.typeof("struct cpContact")
-    fields = [ffi.offsetof(arbiter, n) for n in ARBITER] + [ffi.offsetof(contact, n) for n in CONTACT]
-    return np.array([*fields, ffi.sizeof(contact)], dtype=np.int64)
+    own = {n: int(ffi.offsetof(arbiter, n)) for n in ("body_a", "body_b", "contacts", "n", "u")}
+    point = {
+        ours: int(ffi.offsetof(contact, n))
+        for ours, n in (("r1", "r1"), ("r2", "r2"), ("jn", "jnAcc"), ("jt", "jtAcc"))
+    }
+    return ArbiterLayout(points=int(ffi.offsetof(arbiter, "count")), size=int(ffi.sizeof(contact)), **own, **point)
 
 
-def body_offsets() -> IntArray:
-    """Where a body keeps x, z, angle, v_x, v_z, omega, force x, z, torque, 1 / mass, 1 / moment of inertia [bytes].
-
-    cffi does not know the struct, so they are looked up in a body with known values.
-    """
-    known = np.array([0.5, -1.25, 0.375, 2.75, -3.5, 4.125, -5.25, 6.625, 7.875, 0.0625, 0.015625])
+def body_layout() -> BodyLayout:
+    """Where a body keeps its fields; cffi does not know the struct, so they are looked up in one with known values."""
+    known = BodyLayout(*(v / 64 for v in (32, -80, 24, 176, -224, 264, -336, 424, 504, 4, 1)))  # type: ignore[arg-type]
     body = pymunk.Body(16.0, 64.0)
-    body.position, body.angle, body.velocity = (known[0], known[1]), known[2], (known[3], known[4])
-    body.angular_velocity, body.torque = known[5], known[8]
-    lib.cpBodySetForce(body._body, (known[6], known[7]))
+    body.position, body.angle, body.velocity = (known.x, known.z), known.angle, (known.v_x, known.v_z)
+    body.angular_velocity, body.torque = known.omega, known.moment
+    lib.cpBodySetForce(body._body, (known.force_x, known.force_z))
     memory = np.frombuffer(ffi.buffer(ffi.cast("char *", body._body), 8 * 18), np.float64)
     found = [np.flatnonzero(memory == value) for value in known]
     if any(len(at) == 0 for at in found):
         raise RuntimeError(f"pymunk {pymunk.version} keeps its bodies in another way; install a version that is tested")
-    return np.array([8 * at[0] for at in found], dtype=np.int64)
+    return BodyLayout(*(8 * int(at[0]) for at in found))
 
 
 def address(pointer: Any) -> int:
@@ -50,27 +75,27 @@ def address(pointer: Any) -> int:
     return int(ffi.cast("intptr_t", pointer))
 
 
-def _number(typingctx: Any, pointer: Any) -> Any:
+def _number(_typing: Any, _pointer: Any) -> Any:
     """A void pointer as an int64 address."""
 
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def codegen(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         return builder.ptrtoint(args[0], ir.IntType(64))
 
     return types.int64(types.voidptr), codegen
 
 
-def _as_pointer(typingctx: Any, number: Any) -> Any:
+def _as_pointer(_typing: Any, _number: Any) -> Any:
     """An int64 address as a pointer that `carray` accepts."""
 
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def codegen(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         return builder.inttoptr(args[0], cgutils.voidptr_t)
 
     return types.voidptr(types.int64), codegen
 
 
 def _reader(kind: Any, memory: Any) -> Any:
-    def intrinsic_of(typingctx: Any, number: Any) -> Any:
-        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def intrinsic_of(_typing: Any, _number: Any) -> Any:
+        def codegen(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
             value = builder.load(builder.inttoptr(args[0], memory.as_pointer()))
             return builder.sext(value, ir.IntType(64)) if memory == ir.IntType(32) else value
 
@@ -80,24 +105,24 @@ def _reader(kind: Any, memory: Any) -> Any:
 
 
 def _writer(kind: Any, memory: Any) -> Any:
-    def intrinsic_of(typingctx: Any, number: Any, value: Any) -> Any:
-        def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def intrinsic_of(_typing: Any, _number: Any, _value: Any) -> Any:
+        def codegen(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
             builder.store(args[1], builder.inttoptr(args[0], memory.as_pointer()))
-            return context.get_dummy_value()
+            return _context.get_dummy_value()
 
         return types.void(types.int64, kind), codegen
 
     return intrinsic_of
 
 
-def _call_step(typingctx: Any, function: Any, space: Any, dt: Any) -> Any:
+def _call_step(_typing: Any, _function: Any, _space: Any, _dt: Any) -> Any:
     """function(space, dt) at an address, as cpSpaceStep."""
 
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+    def codegen(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         kind = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t, ir.DoubleType()])
         target = builder.inttoptr(args[0], kind.as_pointer())
         builder.call(target, [builder.inttoptr(args[1], cgutils.voidptr_t), args[2]])
-        return context.get_dummy_value()
+        return _context.get_dummy_value()
 
     return types.void(types.int64, types.int64, types.float64), codegen
 

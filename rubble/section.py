@@ -2,96 +2,85 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pymunk
 
 from rubble.arbiters import ContactReader
+from rubble.arrays import Array, Records, rows
 from rubble.block import Block
-from rubble.contacts import HEAVY_COLUMNS, SUM_COLUMNS
-from rubble.friction import SHEET_SLOT, STRUCTURE, STRUCTURE_SLOT, PairFriction, slot_table
-from rubble.geometry import Array, contiguous, exposed_edges, nearest_edges, overlap_area
-from rubble.lateral import ACROSS
-from rubble.losses import STOCK, WORK, stock
-from rubble.phases import ROTATING, update_phases
+from rubble.contacts import ON_BLOCK, Meeting
+from rubble.cut import Cut
+from rubble.geometry import contiguous, overlap_area
+from rubble.handlers import STRUCTURE, Handlers
+from rubble.losses import ENERGY, Ground, energy_now
+from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
-from rubble.pointers import address, body_offsets
-from rubble.sheet import STRUCTURE_CATEGORY, SheetBody
+from rubble.pointers import address
+from rubble.sheet import DRIVER, STRUCTURE_CATEGORY, SheetBody, SheetMotion
 from rubble.space import Solid, new_space
-from rubble.stepping import STEP, read_bodies, run
+from rubble.stepping import STEP, TOO_MANY, Steps, advance_substeps
+from rubble.sums import SectionSums
+from rubble.tables import lay_out
 from rubble.trim import cut_away
-from rubble.water import EDGE_COLUMNS, SHARES, STATE_COLUMNS, WATER_SUMS
+from rubble.water import water_of
 
-_BODY = body_offsets()
-HEAVY = 64  #: overloaded pairs kept in a window
+_NO_DRIVER = np.zeros(0, DRIVER)
+_ADDRESSES = {"tables", "_reader", "_steps", "_handlers"}  #: hold addresses: made anew after a snapshot is loaded
 
 
 class Section:
     """Blocks, structure and sheet in the plane y; blocks are kept in the order of their numbers."""
 
-    def __init__(self, physics: RubblePhysics, solids: Sequence[Array], y: float, revolved: bool = False) -> None:
-        self.physics, self.y, self.revolved = physics, y, revolved
+    def __init__(self, physics: RubblePhysics, cut: Cut, y: float) -> None:
+        self.physics, self.cut, self.y = physics, cut, y
+        self.slopes = cut.slopes
         self.space = new_space(physics)
-        self.solids = [contiguous(s) for s in solids]
-        self.faces = exposed_edges(self.solids)  #: (e, 4) outer edges of the structure
-        run, rise = self.faces[:, 2] - self.faces[:, 0], self.faces[:, 3] - self.faces[:, 1]
-        self.slopes = np.ascontiguousarray(self.faces[rise < -0.1 * np.hypot(run, rise)])  #: those that meet the drift
         self.blocks: list[Block] = []
         self.sheet: SheetBody | None = None
-        #: see `water.WATER_SUMS`; and, for the last window alone, the impulses of the water's SHARES [N s]
-        self.losses = np.zeros(WATER_SUMS + SHARES)
-        self.momentum_gain = np.zeros(2)  #: of the blocks with added mass over the last window, x and z [N s]
-        self.dead_load = np.zeros(2)  #: weight and constant thrust of the blocks in the last window, x and z [N]
-        self.work, self.across_work = np.zeros(WORK), np.zeros(ACROSS)  #: see `losses`, `lateral`
-        self.thrust_work = 0.0  #: [J]
-        self.sheet_sums = np.zeros(8)  #: see `contacts.accumulate`
-        self.heavy = np.zeros((HEAVY + 1, HEAVY_COLUMNS))
-        self.water = np.array(
-            [
-                physics.rho_w * physics.g,
-                physics.rho_w / 2,
-                physics.form_drag,
-                physics.skin_drag,
-                physics.substep,
-                physics.backfill_level,
-                physics.filling_rate,
-            ]
-        )
-        for solid in self.solids:
-            self._add_solid(solid)
+        self.sums = SectionSums()
+        self.water = water_of(physics)
+        for solid in cut.polygons:
+            self.space.add(
+                Solid(self.space.static_body, solid, physics.restitution**0.5, STRUCTURE, STRUCTURE_CATEGORY)
+            )
         self._connect()
 
     def _connect(self) -> None:
-        """What holds addresses: made anew after a snapshot has been loaded."""
-        self._reader, self._space = ContactReader(), address(self.space._space)
-        self._friction = PairFriction(self.space, self.physics, self.revolved, self.y, self._reader)
+        self._reader = ContactReader()
+        self._steps = Steps(self.physics.substep, address(self.space._space), STEP)
+        self._handlers = Handlers(self.space, self.physics, self.cut.bearings, self.y, self._reader)
         self.changed()
 
     def __getstate__(self) -> dict[str, Any]:
-        own = {k: v for k, v in self.__dict__.items() if k not in _ADDRESSES | _TABLES}
-        return {**own, "sums": self.sums.copy()}
+        return {k: v for k, v in self.__dict__.items() if k not in _ADDRESSES}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
+        window = self.sums.block
         self._connect()
-        self.sums[:] = state["sums"]
+        self.sums.block = window
 
-    def _add_solid(self, solid: Array) -> None:
-        self.space.add(
-            Solid(self.space.static_body, solid, self.physics.restitution**0.5, STRUCTURE, STRUCTURE_CATEGORY)
-        )
+    @property
+    def state(self) -> Records:
+        """(n,) STATE of the blocks after the last window; a view."""
+        return self.tables.state
+
+    @property
+    def overloads(self) -> Records:
+        """Overloaded pairs of the last window, OVERLOAD."""
+        return self.sums.overloads
 
     # ---- blocks and sheet -------------------------------------------------------------------------------------
 
     def trim(self, polygon: Array) -> Array:
         """What is left of a convex outline outside the structure, convex; (0, 2) if nothing is."""
-        return cut_away(contiguous(polygon), self.solids, self.faces)
+        return cut_away(contiguous(polygon), self.cut)
 
     def add(self, block: Block, *, alone: bool = True) -> None:
         """Take in a block; ValueError if it stands inside the structure or, if ``alone``, inside another block."""
-        inside, room = overlap_area(block.outline, self.solids), 2 * self.physics.slop * np.sqrt(block.prism.area)
+        inside, room = overlap_area(block.outline, self.cut.polygons), 2 * self.physics.slop * np.sqrt(block.prism.area)
         where = f"block {block.id} at x = {block.body.position.x:.3f}, z = {block.body.position.y:.3f} m"
         if inside > room:
             raise ValueError(f"{where} overlaps the structure by {inside:.3g} m2; trim its outline first")
@@ -126,22 +115,12 @@ class Section:
         self.blocks = [b for b in self.blocks if b is not block]
         self.changed()
 
-    def set_sheet(
-        self,
-        x: Array,
-        z: Array,
-        front: float,
-        velocity: Array,
-        thickness: float,
-        stiffness: tuple[float, float],
-        inertia: tuple[float, float],
-        applied: tuple[float, float] = (0.0, 0.0),
-    ) -> None:
-        """Where the sheet is at the start of a window; see `SheetBody.follow`."""
+    def set_sheet(self, motion: SheetMotion) -> None:
+        """Where the sheet is at the start of a window, and how it moves."""
         if self.sheet is None:
-            self.sheet = SheetBody(self.space, self.physics, x, z, velocity)
+            self.sheet = SheetBody(self.space, self.physics, motion)
             self.changed()
-        self.sheet.follow(x, z, front, velocity, thickness, stiffness, inertia, applied)
+        self.sheet.follow(motion)
 
     def remove_sheet(self) -> None:
         """Take the sheet out of the section."""
@@ -150,165 +129,80 @@ class Section:
             self.sheet = None
             self.changed()
 
-    # ---- tables of the kernels --------------------------------------------------------------------------------
-
     def changed(self) -> None:
         """Lay out the tables of the kernels anew after bodies have come, gone or changed."""
-        blocks, g = self.blocks, self.physics.g
-        edges = [b.prism.edges for b in blocks]
-        self._edges = np.ascontiguousarray(np.concatenate(edges) if edges else np.zeros((0, EDGE_COLUMNS)))
-        self._offset = np.cumsum([0, *(len(e) for e in edges)], dtype=np.int64)
-        dead = [(b.thrust[0], b.thrust[1] - b.mass * g, b.thrust[2]) for b in blocks]
-        self._dead = np.array(dead, dtype=np.float64).reshape(-1, 3)
-        limit = self.physics.contact_strength * self.physics.substep, 2.0 * self.physics.slop
-        widths = [b.prism.width for b in blocks]
-        self._limit = np.array([*limit, limit[0] * limit[1] * min(widths, default=0.0), *widths])
-        moving = [b.body for b in blocks] + ([self.sheet.body] if self.sheet is not None else [])
-        self._bodies = np.array([address(body._body) for body in moving], np.int64)
-        slots = [*range(len(blocks)), SHEET_SLOT][: len(moving)]
-        self._addresses, self._slots = slot_table(
-            [address(self.space.static_body._body), *self._bodies.tolist()], [STRUCTURE_SLOT, *slots]
-        )
-        outlines = [b.prism.polygon for b in blocks]
-        self.polygons = np.concatenate([np.zeros((0, 2)), *outlines])  #: corners of all blocks in their body frames
-        self.corners = np.cumsum([0, *map(len, outlines)], dtype=np.int64)
-        self.moved = np.array([b.body.mass for b in blocks], np.float64)  #: mass with added mass [kg]
-        self._mass = np.array([b.mass for b in blocks], np.float64)
-        self._thrust = np.array([b.thrust for b in blocks], np.float64).reshape(-1, 3)
-        self._pressure = np.array([b.pressure for b in blocks], np.float64).reshape(-1, 3)
-        #: y and v_y (2, n), and mean force on the structure over the last window (n, 3) [N]; the blocks have views
-        self.side = np.ascontiguousarray(np.array([b.across for b in blocks], np.float64).reshape(-1, 2).T)
-        self.load = np.array([b.load for b in blocks], np.float64).reshape(-1, 3)
-        for i, block in enumerate(blocks):
-            block.across, block.load, block.pressure = self.side[:, i], self.load[i], self._pressure[i]
-        self._flooded = np.array([b.flooded for b in blocks], np.float64)
-        #: see `phases.update_phases`
-        self.axes = np.array(
-            [
-                (b.prism.reach + self.physics.thickness, b.prism.long_axis, np.pi if b.prism.slender else np.pi / 2)
-                for b in blocks
-            ],
-            np.float64,
-        ).reshape(-1, 3)
-        self.status = np.array([(b.aligned, b.phase) for b in blocks], np.int64).reshape(-1, 2)
-        self.sums = np.zeros((len(blocks), SUM_COLUMNS))
-        self._state = np.zeros((len(moving), STATE_COLUMNS))  #: of blocks and sheet, current inside the kernels
-        read_bodies(self._bodies, _BODY, self._state)
-        self.state = self._state[: len(blocks)].copy()  #: of the blocks, in their order
-        self._friction.watch(self._addresses, self._slots, self._state, len(blocks), self.side)
+        sheet = self.sheet.body if self.sheet is not None else None
+        self.tables = lay_out(self.blocks, sheet, self.space.static_body, self.physics)
+        self.sums.block = np.zeros(len(self.blocks), ON_BLOCK)
+        self._handlers.watch(self.tables.bodies, self.tables.slots, self.tables.lateral)
 
     # ---- motion -----------------------------------------------------------------------------------------------
 
     def advance(self, n_substeps: int) -> None:
         """Move on by whole sub-steps; sums of impulses start from zero."""
-        self.sums[:] = self.sheet_sums[:] = self.losses[-SHARES:] = 0.0
-        self.heavy[0, 0] = 0.0
-        self.dead_load, before = self._dead[:, :2].sum(axis=0), self.moved @ self.state[:, 3:5]
+        sums, tables = self.sums, self.tables
+        sums.start_window()
+        before, start = tables.moved @ rows(self.state, "v_x", 2), rows(self.state, "x", 3).copy()
+        sums.dead_load = rows(tables.hulls.weight, "x", 2).sum(axis=0)
         if self.sheet is not None:
-            self.sheet.nodes[:, 2:] = 0.0
+            self.sheet.impulse[:] = 0.0
         if not self.blocks and self.sheet is None:
             return
-        done, start = 0, self.state
+        done = 0
         while done < n_substeps:
-            done += self._run(n_substeps - done)
-        self.state = self._state[: len(self.blocks)].copy()
-        self.momentum_gain = self.moved @ self.state[:, 3:5] - before
-        if self._thrust.any():
-            self.thrust_work += float(np.vdot(self._thrust, self.state[:, :3] - start[:, :3]))
+            done += self._substeps(n_substeps - done)
+        sums.momentum_gain = tables.moved @ rows(self.state, "v_x", 2) - before
+        if rows(tables.thrust).any():
+            sums.thrust_work += float(np.vdot(rows(tables.thrust), rows(self.state, "x", 3) - start))
         if self.physics.filling_rate > 0.0:
-            for block, share in zip(self.blocks, self._flooded.tolist(), strict=True):
-                block.flooded = share
+            for block, flooded in zip(self.blocks, tables.hulls.flooded.tolist(), strict=True):
+                block.flooded = flooded
 
-    def _run(self, n: int) -> int:
-        """Up to ``n`` sub-steps in one compiled call; fewer if the list of pairs must grow. Returns how many."""
-        reader, sheet = self._reader, self.sheet
-        spring, driver, nodes = (sheet.spring, sheet.driver, sheet.nodes) if sheet else (_NO, _NO, _NO_NODES)
+    def _substeps(self, n: int) -> int:
+        """Up to ``n`` sub-steps in one compiled call; fewer if a list must grow. Returns how many."""
+        reader, tables, sheet = self._reader, self.tables, self.sheet
+        self.sums.make_room(reader.capacity)
         self.space._bodies_to_check.clear()  # masses are positive by construction
-        done = run(
+        done: int = advance_substeps(
             n,
-            self.physics.substep,
-            STEP,
-            self._space,
-            self._bodies,
-            _BODY,
-            self._state,
-            self._edges,
-            self._offset,
-            self._dead,
+            self._steps,
+            tables.bodies,
+            tables.hulls,
             self.water,
-            self._flooded,
-            self.losses,
-            spring,
-            driver,
-            reader.header,
-            reader.pairs,
-            reader.layout,
-            self._addresses,
-            self._slots,
-            self._friction.structure,
-            self.side,
-            self._limit,
-            self.sheet_sums,
-            self.sums,
-            nodes,
-            self.heavy,
-            self._pressure,
-            self.work,
+            _NO_DRIVER if sheet is None else sheet.driver,
+            self.meeting(),
+            self.sums.for_kernels(None if sheet is None else sheet.nodes),
         )
         if done < 0:
             what = (
-                f"{reader.header[0]} pairs in contact at once, room for {reader.capacity}"
-                if done == -1
+                f"{reader.count} pairs in contact at once, room for {reader.capacity}"
+                if done == TOO_MANY
                 else "contact with a body that is no block, sheet or structure"
             )
             raise RuntimeError(f"section at y = {self.y:g} m: {what}; take out blocks that overlap")
-        if 2 * reader.header[0] > reader.capacity:
+        if 2 * reader.count > reader.capacity:
             reader.reserve(4 * reader.capacity)
         return done
 
-    def stock(self) -> Array:
-        """Energy of the blocks now, see `losses.STOCK` [J]."""
-        out = np.zeros(STOCK)
-        stock(
-            self._bodies,
-            _BODY,
-            self.state,
-            self.side,
-            self._edges,
-            self._offset,
-            self._mass,
-            self.water[0],
-            self.physics.g,
-            self.physics.afloat,
-            out,
+    def meeting(self) -> Meeting:
+        """Who meets whom, for the kernels."""
+        tables, handlers = self.tables, self._handlers
+        return Meeting(
+            self._reader.pairs, tables.slots, handlers.structure, handlers.faces, tables.lateral, tables.strength
         )
+
+    def energy(self) -> Records:
+        """Energy of the blocks now (1,), `losses.ENERGY` [J]."""
+        p, tables, out = self.physics, self.tables, np.zeros(1, ENERGY)
+        ground = Ground(p.g, self.water.rho_g, p.afloat)
+        energy_now(tables.bodies, tables.lateral, tables.hulls, tables.mass, ground, out)
         return out
 
     def update_phases(self) -> None:
         """Phases of the blocks after a window, see `phases`."""
-        if len(self.slopes) == 0 or not (self.status[:, 1] == ROTATING).any():
+        tables, status = self.tables, self.tables.status
+        if len(self.slopes) == 0 or status["sliding"].all():
             return  # without a slope nothing aligns
-        slopes = nearest_edges(self.slopes, self.state)
-        if update_phases(slopes, self.axes, self.state, self.sums, self.physics.align_tolerance, self.status):
-            for block, (aligned, phase) in zip(self.blocks, self.status.tolist(), strict=True):
-                block.aligned, block.phase = bool(aligned), phase
-
-
-_NO, _NO_NODES = np.zeros(0), np.zeros((0, 4))
-_ADDRESSES = {"_reader", "_space", "_friction", "_bodies", "_addresses", "_slots", "_state"}
-#: laid out anew from the blocks by `changed`
-_TABLES = {
-    "_edges",
-    "_offset",
-    "_dead",
-    "_limit",
-    "polygons",
-    "corners",
-    "moved",
-    "side",
-    "load",
-    "_flooded",
-    "axes",
-    "status",
-    "state",
-}
+        if update_phases(self.slopes, tables.axes, self.state, self.sums.block, self.physics.align_tolerance, status):
+            for block, row in zip(self.blocks, status, strict=True):
+                block.aligned, block.sliding = bool(row["aligned"]), bool(row["sliding"])

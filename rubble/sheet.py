@@ -16,79 +16,106 @@ At the start of a window the edge stands where the lattice has it, and moves wit
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pymunk
 
+from rubble.arrays import Array, Record, filled, record, rows
 from rubble.compiled import compiled
-from rubble.friction import SHEET
-from rubble.geometry import Array
+from rubble.contacts import NODE
+from rubble.handlers import SHEET
 from rubble.physics import RubblePhysics
 
 ICE_SHEET, STRUCTURE_CATEGORY = 0b10, 0b100  #: collision categories; the lattice does the contact between these two
 
 
-@compiled("void(float64[::1], float64, float64[::1], float64[::1], float64[::1])", nogil=True)
-def spring_force(spring: Array, dt: float, driver: Array, state: Array, force: Array) -> None:
-    """Force on the sheet body, and one step of its driver.
+#: where the lattice has the edge, x, z [m], and how it moves [m/s]; stiffness of its spring [N/m]; force that the
+#: driver's motion already answers to [N]
+DRIVER = record("x", "z", "v_x", "v_z", "k_x", "k_z", "applied_x", "applied_z")
 
-    spring = (k_x, k_z, F_ax, F_az); driver = (x, z, v_x, v_z), moved by dt; state as in `water`.
-    """
-    for i in range(2):
-        w = state[3 + i] - driver[2 + i]
-        u = state[i] - driver[i] + dt * w
-        force[i] = -spring[i] * (u + dt * w) - spring[2 + i]
-        driver[i] += dt * driver[2 + i]
-    force[2] = 0.0
+
+@dataclass(frozen=True)
+class SheetMotion:
+    """The sheet in one section in a window: its nodes, front first, and how they move and yield."""
+
+    x: Array  #: (m,) of the nodes at the start, decreasing [m]
+    z: Array  #: (m,) middle of the thickness [m]
+    front: float  #: x of the sheet's foremost point [m]
+    velocity: Array  #: (m, 2) of the nodes in x and z, mean over the window [m/s]
+    thickness: float  #: [m]
+    stiffness: tuple[float, float]  #: of the edge in x and z [N/m]
+    inertia: tuple[float, float]  #: mass that moves with the edge in x and z [kg]
+    applied: tuple[float, float] = (0.0, 0.0)  #: F_a above, x and z [N]
+
+    def __post_init__(self) -> None:
+        for name in ("x", "z"):
+            object.__setattr__(self, name, np.array(getattr(self, name), dtype=np.float64).reshape(-1))
+        x, m = self.x, len(self.x)
+        if m == 0 or m != len(self.z) or (np.diff(x) >= 0).any() or self.front < x[0]:
+            raise ValueError(f"sheet: node x must decrease, front {self.front:g} lie ahead; got {x}")
+        object.__setattr__(self, "velocity", np.array(self.velocity, dtype=np.float64).reshape(m, 2))
+        k, inertia = np.array(self.stiffness), np.array(self.inertia)
+        if not (np.isfinite([k, inertia]).all() and (k > 0).all() and (inertia > 0).all()):
+            raise ValueError(f"sheet stiffness is {k} N/m, inertia {inertia} kg; all must be > 0 and finite")
+
+
+@compiled(nogil=True)
+def spring_force(driver: Record, dt: float, state: Record) -> tuple[float, float]:
+    """Force on the sheet body, x and z [N], and one step of its driver."""
+    wx, wz = state.v_x - driver.v_x, state.v_z - driver.v_z
+    ux, uz = state.x - driver.x + dt * wx, state.z - driver.z + dt * wz
+    fx = -driver.k_x * (ux + dt * wx) - driver.applied_x
+    fz = -driver.k_z * (uz + dt * wz) - driver.applied_z
+    driver.x += dt * driver.v_x
+    driver.z += dt * driver.v_z
+    return fx, fz
 
 
 class SheetBody:
     """Sheet edge of one section: its body, its shapes, its driver and the nodes to which forces return."""
 
-    def __init__(self, space: pymunk.Space, physics: RubblePhysics, x: Array, z: Array, velocity: Array) -> None:
+    def __init__(self, space: pymunk.Space, physics: RubblePhysics, motion: SheetMotion) -> None:
         self.space, self.physics = space, physics
         self.body = pymunk.Body(1.0, float("inf"))
-        self.body.position = float(x[0]), float(z[0])
-        self.body.velocity = tuple(velocity[0].tolist())
-        self.driver = np.array([x[0], z[0], 0.0, 0.0])
-        self.spring = np.zeros(4)
-        self.nodes = np.zeros((len(x), 4))
+        self.body.position = float(motion.x[0]), float(motion.z[0])
+        self.body.velocity = tuple(motion.velocity[0].tolist())
+        self.driver = np.zeros(1, DRIVER)
+        self.nodes = np.zeros(len(motion.x), NODE)
         self.shapes: list[pymunk.Poly] = []
         self._corners = np.zeros((0, 4, 2))
         space.add(self.body)
 
-    def follow(
-        self,
-        x: Array,
-        z: Array,
-        front: float,
-        velocity: Array,
-        thickness: float,
-        stiffness: tuple[float, float],
-        inertia: tuple[float, float],
-        applied: tuple[float, float],
-    ) -> None:
+    @property
+    def impulse(self) -> Array:
+        """(m, 2) on the nodes over the window, x and z; a view [N s]."""
+        return rows(self.nodes, "impulse_x", 2)
+
+    def follow(self, motion: SheetMotion) -> None:
         """Take over the lattice's motion in a window, from its start.
 
         The edge moves with those nodes that met rubble in the last window, weighted with the force; without contact,
         with the foremost one.
         """
-        force = np.abs(self.nodes[:, 2:]).sum(axis=1)
+        x, z = motion.x, motion.z
+        force = np.abs(self.impulse).sum(axis=1)
         total = float(force.sum())
-        v = force @ velocity / total if len(force) == len(x) and total > 0.0 else velocity[0]
-        self.driver[:] = x[0], z[0], v[0], v[1]
+        v = force @ motion.velocity / total if len(force) == len(x) and total > 0.0 else motion.velocity[0]
         self.body.position, self.body.velocity = (float(x[0]), float(z[0])), (float(v[0]), float(v[1]))
-        self._set_spring(np.array(stiffness, dtype=np.float64), np.array(inertia, dtype=np.float64), applied)
-        self.nodes = np.column_stack([x, z, np.zeros((len(x), 2))])
-        self._set_shapes(sheet_polygons(x, z, front, thickness, self.physics.slop / 2) - self.driver[:2])
+        k, applied = self._yielding(motion), motion.applied
+        self.driver = filled(DRIVER, [x[0], z[0], v[0], v[1], *k, *applied])
+        self.nodes = filled(NODE, np.column_stack([x, z, np.zeros((len(x), 2))]))
+        corners = sheet_polygons(x, z, motion.front, motion.thickness, self.physics.slop / 2)
+        self._set_shapes(corners - np.array([x[0], z[0]]))
         self.space.reindex_shapes_for_body(self.body)
 
-    def _set_spring(self, k: Array, m: Array, applied: tuple[float, float]) -> None:
-        if not (np.isfinite([k, m]).all() and (k > 0).all() and (m > 0).all()):
-            raise ValueError(f"sheet stiffness is {k} N/m, inertia {m} kg; all must be > 0 and finite")
+    def _yielding(self, motion: SheetMotion) -> Array:
+        """Stiffness in x and z that a sub-step resolves (2,) [N/m]; sets the mass of the body, see above."""
+        k, m = np.array(motion.stiffness, dtype=np.float64), np.array(motion.inertia, dtype=np.float64)
         dt2 = self.physics.substep**2
         mass = float((m + k * dt2).min())
         self.body.mass = mass
-        self.spring[:2], self.spring[2:] = np.minimum(k, mass / dt2), applied
+        return np.minimum(k, mass / dt2)
 
     def _set_shapes(self, local: Array) -> None:
         """New corners (polygons, 4, 2) for the old shapes if their number is the same: contacts keep their history."""
@@ -128,7 +155,8 @@ def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance
     if front - x[0] > 1e-9:
         slope = (points[0, 1] - points[1, 1]) / (points[0, 0] - points[1, 0])
         points[0] = front, points[0, 1] + slope * (front - x[0])
-    return _pieces(points, thickness / 2, tolerance)
+    pieces: Array = _pieces(points, thickness / 2, tolerance)
+    return pieces
 
 
 @compiled("float64[:, :, ::1](float64[:, ::1], float64, float64)", nogil=True)
@@ -146,7 +174,7 @@ def _pieces(line: Array, half: float, tolerance: float) -> Array:
             if fits:
                 end += 1
         for c in range(4):
-            at, side = (end if c in (0, 3) else start), (-half if c < 2 else half)
-            out[count, c, 0], out[count, c, 1] = line[at, 0], line[at, 1] + side
+            at, above = (end if c in (0, 3) else start), (-half if c < 2 else half)
+            out[count, c, 0], out[count, c, 1] = line[at, 0], line[at, 1] + above
         count, start = count + 1, end
     return out[:count].copy()

@@ -28,7 +28,7 @@ def restore(saved: bytes, like: RubbleLayer) -> RubbleLayer:
         layer = pickle.loads(saved)
     if not isinstance(layer, RubbleLayer):
         raise ValueError("these bytes are no snapshot of a rubble layer; use what rubble.snapshot.save returned")
-    layer.share(like)
+    layer.connect_like(like)
     return layer
 
 

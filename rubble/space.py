@@ -11,7 +11,7 @@ from typing import Any
 
 import pymunk
 
-from rubble.geometry import Array
+from rubble.arrays import Array
 from rubble.physics import RubblePhysics
 
 

@@ -8,101 +8,88 @@ the library keeps them.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from pymunk._chipmunk_cffi import ffi, lib
 
+from rubble.arrays import Records
+from rubble.bodies import VELOCITY, Bodies, read_bodies, set_force
 from rubble.compiled import compiled
-from rubble.contacts import accumulate
-from rubble.geometry import Array
-from rubble.losses import contact_work, kick, settle
-from rubble.pointers import IntArray, address, real, set_real, step_space
+from rubble.contacts import Impulses, Meeting, accumulate
+from rubble.losses import book_correction, contact_work, kick, middle_velocity
+from rubble.pointers import address, step_space
 from rubble.sheet import spring_force
-from rubble.water import apply_water
+from rubble.water import Hulls, Water, apply_water
 
 STEP = address(ffi.addressof(lib, "cpSpaceStep"))
+TOO_MANY, STRANGE = -1, -2  #: a pair did not fit any more; one with a body that is no block, sheet or structure
 
 
-@compiled("void(int64[::1], int64[::1], float64[:, ::1])", nogil=True)
-def read_bodies(bodies: IntArray, layout: IntArray, state: Array) -> None:
-    """State rows of bodies, given by their addresses; ``layout`` as in `pointers.body_offsets`."""
-    for i in range(bodies.shape[0]):
-        for k in range(6):
-            state[i, k] = real(bodies[i] + layout[k])
+class Steps(NamedTuple):
+    """What is stepped, and how far at a time."""
+
+    dt: float  #: sub-step [s]
+    space: int  #: address of the space
+    function: int  #: address of cpSpaceStep
 
 
-@compiled(
-    "int64(int64, float64, int64, int64, int64[::1], int64[::1], float64[:, ::1], float64[:, ::1], int64[::1], "
-    "float64[:, ::1], float64[::1], float64[::1], float64[::1], float64[::1], float64[::1], int64[::1], int64[::1], "
-    "int64[::1], int64[::1], int64[::1], float64[::1], float64[:, ::1], float64[::1], float64[::1], float64[:, ::1], "
-    "float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1])",
-    nogil=True,
-)
-def run(
+class Work(NamedTuple):
+    """Energy of a section since its start, and impulses of the water over a window."""
+
+    water: Records  #: (1,) WATER_WORK
+    impulse: Records  #: (1,) WATER_IMPULSE
+    step: Records  #: (1,) STEP_WORK
+    loss: Records  #: (3,) PAIR_LOSS
+
+
+class Sums(NamedTuple):
+    """All that is summed over sub-steps."""
+
+    impulses: Impulses
+    work: Work
+
+
+@compiled(nogil=True)
+def advance_substeps(
     n: int,
-    dt: float,
-    step: int,
-    space: int,
-    bodies: IntArray,
-    layout: IntArray,
-    state: Array,
-    edges: Array,
-    offset: IntArray,
-    dead: Array,
-    water: Array,
-    flooded: Array,
-    losses: Array,
-    spring: Array,
-    driver: Array,
-    header: IntArray,
-    pairs: IntArray,
-    pair_layout: IntArray,
-    addresses: IntArray,
-    slots: IntArray,
-    law: Array,
-    side: Array,
-    limit: Array,
-    sheet: Array,
-    sums: Array,
-    nodes: Array,
-    heavy: Array,
-    pressure: Array,
-    work: Array,
+    steps: Steps,
+    bodies: Bodies,
+    hulls: Hulls,
+    water: Water,
+    driver: Records,
+    meeting: Meeting,
+    sums: Sums,
 ) -> int:
-    """Do up to ``n`` sub-steps and returns how many; fewer when the list of pairs (``header``) is half full.
+    """Do up to ``n`` sub-steps and return how many; fewer where a list must grow first.
 
-    ``state`` holds the blocks and, in its last row, the sheet if there is one; valid after every step. -1: a pair
-    did not fit any more; -2: one with a body that is no block, sheet or structure. ``pressure`` as in `water`;
-    ``work`` as in `losses`.
+    The states of `Bodies` are valid after every sub-step. ``driver`` (1,) DRIVER moves the sheet if there is one.
+    A section goes on after a return, so that nothing is lost: the list of pairs grows when it is half full, that of
+    overloaded pairs when it could not take all pairs of another sub-step. Or returns TOO_MANY, STRANGE.
     """
-    sheet_row = dead.shape[0]
-    force, old, kicked = np.zeros(3), np.empty_like(state), np.empty((state.shape[0], 3))
-    read_bodies(bodies, layout, state)
+    dt, state, sheet, pairs = steps.dt, bodies.state, bodies.blocks, meeting.pairs.list[0]
+    impulses, work = sums.impulses, sums.work
+    has_sheet = sheet < bodies.address.shape[0]
+    water_work, impulse, step_work = work.water[0], work.impulse[0], work.step[0]
+    old, kicked = np.empty_like(state), np.empty(state.shape[0], VELOCITY)
+    read_bodies(bodies)
     for k in range(n):
-        apply_water(edges, offset, dead, water, flooded, state, bodies, layout, pressure, losses)
-        if sheet_row < bodies.shape[0]:
-            spring_force(spring, dt, driver, state[sheet_row], force)
-            for i in range(3):
-                set_real(bodies[sheet_row] + layout[6 + i], force[i])
-        header[0] = 0
+        apply_water(hulls, bodies, water, water_work, impulse)
+        if has_sheet:
+            fx, fz = spring_force(driver[0], dt, state[sheet])
+            set_force(bodies.address[sheet], bodies.layout, fx, fz, 0.0)
+        pairs.count = 0
         old[:] = state
-        kick(bodies, layout, state, dt, sheet_row, kicked, work)
-        step_space(step, space, dt)
-        read_bodies(bodies, layout, state)
-        settle(old, state, dt, dead, edges, offset, water[0], pressure, kicked, work)
-        if sheet_row < bodies.shape[0]:
-            sheet[0], sheet[1] = state[sheet_row, 0], state[sheet_row, 1]
-            sheet[2], sheet[3] = state[sheet_row, 3], state[sheet_row, 4]
-        if header[0] > header[1]:
-            return -1
-        if (
-            header[0] > 0
-            and accumulate(
-                header, pairs, pair_layout, addresses, slots, state, law, side, limit, sheet, sums, nodes, heavy
-            )
-            > 0
-        ):
-            return -2
-        contact_work(header, pairs, pair_layout, addresses, slots, kicked, sheet_row, work)
-        if 2 * header[0] > header[1]:
+        kick(bodies, dt, kicked, step_work)
+        step_space(steps.function, steps.space, dt)
+        read_bodies(bodies)
+        book_correction(old, bodies, dt, hulls, water.rho_g, step_work)
+        middle_velocity(state, kicked)
+        if pairs.count > pairs.room:
+            return TOO_MANY
+        if pairs.count > 0 and accumulate(meeting, bodies, impulses) > 0:
+            return STRANGE
+        contact_work(meeting.pairs, meeting.slots, kicked, sheet, work.loss, step_work)
+        if 2 * pairs.count > pairs.room or impulses.overloads[0].pairs + pairs.room > impulses.overload.shape[0]:
             return k + 1
     return n

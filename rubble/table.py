@@ -1,72 +1,69 @@
-"""All blocks as arrays, and their balances, gathered over the sections."""
+"""All blocks as arrays, and what carries them, gathered over the sections."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rubble.block import Block
-from rubble.geometry import Array, IntArray, moments, place, place_all, submerged
-from rubble.physics import RubblePhysics
+from rubble.arrays import Array, rows
+from rubble.bodies import STATE, Outlines, place_all
 from rubble.section import Section
-from rubble.water import SHARES
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
-    """All blocks as arrays, in the order of their numbers; meanings and units as in `coupling.interface.BlockTable`."""
+def columns(sections: Mapping[int, Section]) -> dict[str, NDArray[Any]]:
+    """All blocks as arrays, in the order of their numbers.
 
-    id: IntArray
-    fragment: IntArray
-    section: IntArray
-    phase: IntArray
-    mass: Array
-    width: Array
-    position: Array
-    angle: Array
-    velocity: Array
-    omega: Array
-    load: Array
-    outline: Array
-    offset: IntArray
-
-
-def gather(sections: Mapping[int, Section]) -> Table:
-    """The table of all blocks."""
+    ``id``, ``section``, ``sliding`` (else rotating), ``mass`` [kg], ``width`` [m], ``position`` (n, 3) [m], ``angle``
+    counter-clockwise in the x-z picture [rad], ``velocity`` (n, 3) [m/s], ``omega`` [rad/s], ``load`` (n, 3) mean force
+    on the structure [N]; ``outline`` (v, 2) all corners [m], of which block i owns those from ``offset[i]`` to
+    ``offset[i + 1]``.
+    """
     blocks = [b for s in sections.values() for b in s.blocks]
     ids = np.array([b.id for b in blocks], np.int64)
     order = np.argsort(ids)
-    state = np.concatenate([np.zeros((0, 6)), *(s.state for s in sections.values())])[order]
+    state = np.concatenate([np.zeros(0, STATE), *(s.state for s in sections.values())])[order]
     y, v_y = np.array([(b.y, b.v_y) for b in blocks]).reshape(-1, 2)[order].T
-    polygons = np.concatenate([np.zeros((0, 2)), *(s.polygons for s in sections.values())])
-    count = np.concatenate([np.zeros(0, np.int64), *(np.diff(s.corners) for s in sections.values())])
+    number = np.repeat(np.array(list(sections), np.int64), [len(s.blocks) for s in sections.values()])
+    outlines = _outlines(sections, order)
+    return {
+        "id": ids[order],
+        "section": number[order],
+        "sliding": np.array([b.sliding for b in blocks], np.bool_)[order],
+        "mass": np.array([b.mass for b in blocks], np.float64)[order],
+        "width": np.array([b.prism.width for b in blocks], np.float64)[order],
+        "position": np.stack([state["x"], y, state["z"]], -1),
+        "angle": state["angle"].copy(),
+        "velocity": np.stack([state["v_x"], v_y, state["v_z"]], -1),
+        "omega": state["omega"].copy(),
+        "load": np.concatenate([np.zeros((0, 3)), *(rows(s.tables.load) for s in sections.values())])[order],
+        "outline": place_all(outlines, state),
+        "offset": outlines.offset,
+    }
+
+
+def _outlines(sections: Mapping[int, Section], order: NDArray[np.intp]) -> Outlines:
+    """Outlines of all blocks in body frames, in the given order."""
+    own = [s.tables.outlines for s in sections.values()]
+    corners = np.concatenate([np.zeros((0, 2)), *(o.corners for o in own)])
+    count = np.concatenate([np.zeros(0, np.int64), *(np.diff(o.offset) for o in own)])
     start, count = (np.cumsum(count) - count)[order], count[order]
     offset = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
-    corner = np.repeat(start - offset[:-1], count) + np.arange(offset[-1])
-    number = np.repeat(np.array(list(sections), np.int64), [len(s.blocks) for s in sections.values()])
-    return Table(
-        id=ids[order],
-        fragment=np.array([b.fragment for b in blocks], np.int64)[order],
-        section=number[order],
-        phase=np.array([b.phase for b in blocks], np.int64)[order],
-        mass=np.array([b.mass for b in blocks])[order],
-        width=np.array([b.prism.width for b in blocks])[order],
-        position=np.stack([state[:, 0], y, state[:, 1]], -1),
-        angle=state[:, 2].copy(),
-        velocity=np.stack([state[:, 3], v_y, state[:, 4]], -1),
-        omega=state[:, 5].copy(),
-        load=np.array([b.load for b in blocks]).reshape(-1, 3)[order],
-        outline=place_all(polygons[corner], offset, state),
-        offset=offset,
-    )
+    return Outlines(corners[np.repeat(start - offset[:-1], count) + np.arange(offset[-1])], offset)
 
 
-def momentum(blocks: list[Block]) -> Array:
-    """True mass times velocity of blocks (3,) [N s], summed in the order of their numbers."""
-    rows = [b.mass * np.array([b.body.velocity.x, b.v_y, b.body.velocity.y]) for b in blocks]
-    return np.sum(rows, axis=0) if rows else np.zeros(3)
+def contact_centres(sections: Mapping[int, Section]) -> Array:
+    """Mean place of each block's contacts with the structure (n, 2), see `RubbleLayer.contact_centres` [m]."""
+    ids = np.array([b.id for s in sections.values() for b in s.blocks], np.int64)
+    centres = [np.zeros((0, 2))]
+    for s in sections.values():
+        push = s.sums.block["push"][:, None]
+        at = rows(s.sums.block, "push_at_x", 2)
+        centres.append(np.divide(at, push, out=np.full(at.shape, np.nan), where=push > 0.0))
+    found: Array = np.concatenate(centres)[np.argsort(ids)]
+    return found
 
 
 def budget(sections: Iterable[Section], window: float) -> dict[str, Array]:
@@ -76,34 +73,14 @@ def budget(sections: Iterable[Section], window: float) -> dict[str, Array]:
     add to it, ``drag``, ``inertia`` minus the gain of momentum with added mass, ``on_sheet`` the force that the blocks
     exert on the sheet. What these do not carry presses on the structure.
     """
-    forces = np.zeros((5, 2))
+    flooded, dry, drag, inertia, on_sheet = np.zeros((5, 2))
     for s in sections:
-        forces[:3] += s.losses[-SHARES:].reshape(3, 2)
-        forces[0] += window * s.dead_load
-        forces[3] -= s.momentum_gain
-        forces[4] += s.sheet_sums[5:7]
-    names = ("flooded_rubble", "dry_tops", "drag", "inertia", "on_sheet")
-    return dict(zip(names, forces / window if window else forces, strict=True))
-
-
-def energy(blocks: list[Block], physics: RubblePhysics) -> dict[str, float]:
-    """Energy of blocks [J]: kinetic (true mass, in the plane and across), added (of the water that moves with them),
-    potential (weight, and work against the pressure of water all around).
-    """
-    kinetic = added = potential = 0.0
-    for b in blocks:
-        v2, om2 = float(b.body.velocity.length_squared), float(b.body.angular_velocity) ** 2
-        kinetic += (b.mass * (v2 + b.v_y**2) + b.prism.inertia * om2) / 2
-        added += ((b.body.mass - b.mass) * v2 + (b.body.moment - b.prism.inertia) * om2) / 2
-        potential += b.mass * physics.g * b.body.position.y + _water_energy(b, physics)
-    return {"kinetic": kinetic, "added": added, "potential": potential}
-
-
-def _water_energy(block: Block, physics: RubblePhysics) -> float:
-    """rho_w g times the integral of depth over the submerged part [J]; strips count with their own width."""
-    (x, z), angle = block.body.position, block.body.angle
-    total = 0.0
-    for part, width in zip(block.prism.parts, block.prism.widths, strict=True):
-        area, _, depth, _ = moments(submerged(place(part, x, z, angle, 0.0, 0.0)))
-        total -= physics.rho_w * physics.g * width * area * depth
-    return total
+        sums = s.sums
+        flooded += rows(sums.water_impulse, "flooded_x", 2)[0]
+        dry += rows(sums.water_impulse, "dry_x", 2)[0]
+        drag += rows(sums.water_impulse, "drag_x", 2)[0]
+        flooded += window * sums.dead_load
+        inertia -= sums.momentum_gain
+        on_sheet += rows(sums.sheet, "x", 2)[0]
+    forces = {"flooded_rubble": flooded, "dry_tops": dry, "drag": drag, "inertia": inertia, "on_sheet": on_sheet}
+    return {name: f / window if window else f for name, f in forces.items()}

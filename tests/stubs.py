@@ -8,11 +8,12 @@ means over the window.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from scipy.linalg import expm
 
-from coupling.interface import BlockTable, SheetEdge, SheetForces
-from coupling.sheet_port import SheetReport
+from coupling.interface import BlockTable, SheetEdge, SheetForces, SheetReport
 
 M1, K1, M2, K, C = 1.0, 3.0, 2.0, 5.0, 0.4
 START = np.array([1.0, 0.0, -0.5, 0.0])  #: x_1, v_1, x_2, v_2
@@ -35,10 +36,7 @@ class MassOnSpring:
         self._before, self._window = self.state, 1.0
 
     def save(self):
-        return dict(vars(self))
-
-    def restore(self, saved):
-        vars(self).update(saved)
+        return partial(vars(self).update, dict(vars(self)))
 
     def advance(self, t_ns, window_ns, rubble, rubble_load):
         force, self._before, self._window = rubble.force[:, 0].sum(), self.state, window_ns / NS
@@ -68,10 +66,7 @@ class MassBehindSpring:
         self._force, self._edge = K * (START[2] - START[0]), START[:2]
 
     def save(self):
-        return {k: v for k, v in vars(self).items() if k != "calls"}
-
-    def restore(self, saved):
-        vars(self).update(saved)
+        return partial(vars(self).update, {k: v for k, v in vars(self).items() if k != "calls"})
 
     def sections_in_use(self):
         return [0]
@@ -101,4 +96,4 @@ class MassBehindSpring:
 
 def edge(x, v):
     """An edge of one node."""
-    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), 1.0, np.array([0]), (1.0, 1.0), (1.0, 1.0))
+    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), np.array([0]), (1.0, 1.0), (1.0, 1.0))

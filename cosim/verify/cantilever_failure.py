@@ -14,9 +14,9 @@ import numpy as np
 
 from cosim.verify.case import Figure
 from lattice.continuum import hydrodynamic_damping
+from lattice.criteria.laws import crack_tip_bending
 from lattice.grid import Array, IntArray
 from lattice.ice import BeamTest, Ice
-from lattice.limits import Strength, crack_tip_bending
 from lattice.motion import MovingPiece
 from lattice.specimens import cantilever, factor_f
 
@@ -43,16 +43,16 @@ def history(p: dict[str, Any], failure_load: float, quick: bool) -> tuple[Array,
     piece = cantilever(ice, p["L_b"], p["w"], int(p["cells"]))
     moving = MovingPiece(piece, c=hydrodynamic_damping(ice, 0.1), dt=p["dt"] or None)
     root = piece.root[0] * (piece.grid.ny - 1) + piece.root[1] + np.arange(piece.root[2])
-    return _march(moving, root, Strength(ice), 0.8 if quick else 1.0)
+    return _march(moving, root, ice, 0.8 if quick else 1.0)
 
 
-def _march(moving: MovingPiece, root: IntArray, strength: Strength, end: float) -> tuple[Array, Array, float]:
+def _march(moving: MovingPiece, root: IntArray, ice: Ice, end: float) -> tuple[Array, Array, float]:
     times, deflection, failed = [0.0], [np.zeros(3)], np.inf
     while moving.stepper.t < end:
         moving.run(LOOK, RATE)
         standing = root[moving.intact[root]]
         if len(standing):
-            broken = standing[crack_tip_bending(moving.state(standing), strength) >= 1.0]
+            broken = standing[crack_tip_bending(moving.state(standing), ice) >= 1.0]
             if len(broken):
                 failed = min(failed, moving.stepper.t)
                 moving.remove(broken)

@@ -15,8 +15,10 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, near
 from coupling.rubble_port import OUTLINE_TOLERANCE
-from coupling.structure import Structure, cone
-from rubble.geometry import Array
+from coupling.structure import Revolved, cone
+from rubble.arrays import Array
+from rubble.block import Slab
+from rubble.cut import revolved
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -54,9 +56,8 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
         physics,
         WIDTH,
         origin=y,
-        revolved=True,
-        solids=lambda at: convex_parts(
-            structure.section_outline(at, structure.bottom, structure.top, OUTLINE_TOLERANCE)
+        solids=lambda at: revolved(
+            convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE))
         ),
     )
     z, angle = -1.5, 2.0 * np.pi * (np.arange(128) + 0.5) / 128
@@ -65,7 +66,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
     middle = np.array([float(structure.face_x(y, z)), z]) + (SIZE - 1e-4) * m
     outline = middle + SIZE * np.column_stack([np.cos(angle), np.sin(angle)])
     ends = np.array([outline[:, 0].min(), outline[:, 0].max()])
-    number = layer.add_block(0, outline, ends, np.array([WIDTH]), p["rho_i"], (0.0, 0.0), 0.0, y, 0)
+    number = layer.add_block(0, Slab(outline, ends, np.array([WIDTH]), p["rho_i"]), y=y)
     lift = (p["rho_w"] / p["rho_i"] - 1.0) * p["g"] * layer.mass
     lock_rotation(layer, number)
     thrust(layer, number, p["thrust"] * lift)
@@ -91,7 +92,7 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
 
 
 def _statics(
-    p: dict[str, Any], structure: Structure, y: float, centre: Array, velocity: Array, across: float, lift: float
+    p: dict[str, Any], structure: Revolved, y: float, centre: Array, velocity: Array, across: float, lift: float
 ) -> Array:
     """Force on the structure (3,) of a round block at ``centre`` that slides with ``velocity``, across at a speed."""
     z = np.linspace(centre[1] - SIZE, centre[1] + SIZE, 2001)

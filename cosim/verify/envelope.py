@@ -13,9 +13,9 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
 from cosim.verify.plate import springs_of
+from lattice.criteria.laws import bending_bottom, bending_top, compression, spalling, tension
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import Strength, bending_bottom, bending_top, compression, spalling, tension
 from lattice.strain import CellState
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 
@@ -45,12 +45,13 @@ def utilisation(p: dict[str, Any], stress: Array, alpha: float, in_plane: bool) 
         sigma_t=p["sigma_t"],
         sigma_f=p["sigma_t"],
         sigma_c=p["sigma_c"],
+        sigma_spall=p["sigma_spall"],
     )
     springs = springs_of(p, ice)
     load: Callable[..., CellState] = cell_in_stress if in_plane else cell_in_bending
-    state, strength = load(ice, springs, stress, alpha), Strength(ice, sigma_spall=p["sigma_spall"])
+    state = load(ice, springs, stress, alpha)
     criteria = IN_PLANE if in_plane else (bending_top, bending_bottom)
-    return max(float(criterion(state, strength)[0]) for criterion in criteria)
+    return max(float(criterion(state, ice)[0]) for criterion in criteria)
 
 
 def radius(p: dict[str, Any], direction: Array, alpha: float, in_plane: bool = True) -> float:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, near
-from rubble.geometry import Array
+from rubble.arrays import Array
+from rubble.block import Slab
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 
@@ -41,7 +42,7 @@ def block(p: dict[str, Any], draft: float, drag: float, omega: float = 0.0) -> R
     layer = RubbleLayer(physics, p["width"])
     x = p["length"] / 2.0
     outline = np.array([(-x, -draft), (x, -draft), (x, p["h"] - draft), (-x, p["h"] - draft)])
-    layer.add_block(0, outline, np.array([-x, x]), np.array([p["width"]]), p["rho_i"], (0.0, 0.0), omega, 0.0, 0)
+    layer.add_block(0, Slab(outline, np.array([-x, x]), np.array([p["width"]]), p["rho_i"]), (0.0, 0.0), omega)
     return layer
 
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near, value
 from lattice.continuum import hydrodynamic_damping
+from lattice.criteria.laws import bending_top
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import Strength, bending_top
 from lattice.motion import MovingPiece
 from lattice.specimens import cantilever
 
@@ -55,7 +55,7 @@ def simulate(p: dict[str, Any], scale: float) -> tuple[Array, Array, Array]:
     shape, strain, broken = [], [], []
     for look in range(LOOKS):
         moving.run(int(p["steps"]) // LOOKS, p["rate"] * s**3 / np.sqrt(s))
-        load = bending_top(moving.state(root), Strength(ice))
+        load = bending_top(moving.state(root), ice)
         failed = root[(load >= 1.0) & moving.intact[root]]
         if len(failed):
             moving.remove(failed)

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, limited, near, value
+from lattice.criteria.laws import bending_bottom, bending_top, out_of_plane_shear
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import Strength, bending_bottom, bending_top, out_of_plane_shear
 from lattice.specimens import Piece, l_beam
 from lattice.strain import CellState
 
@@ -36,9 +36,9 @@ PARAMETERS: dict[str, Any] = {
 SOURCE = "van Vliet (2018), sections 5.2 and 5.3"
 
 
-def utilisation(state: CellState, strength: Strength) -> Array:
+def utilisation(state: CellState, ice: Ice) -> Array:
     """Left side of (5.1): the worse of top and bottom."""
-    return np.maximum(bending_top(state, strength), bending_bottom(state, strength))
+    return np.maximum(bending_top(state, ice), bending_bottom(state, ice))
 
 
 def run(p: dict[str, Any], _quick: bool) -> CaseResult:
@@ -52,14 +52,15 @@ def run(p: dict[str, Any], _quick: bool) -> CaseResult:
         sigma_t=p["sigma_f"],
         sigma_f=p["sigma_f"],
         sigma_c=p["ratio"] * p["sigma_f"],
+        sigma_shear=p["sigma_shear"],
     )
-    strength, known = Strength(ice, sigma_shear=p["sigma_shear"]), p == PARAMETERS
+    known = p == PARAMETERS
     piece = l_beam(ice, p["L_1"], p["L_2"], p["width"], p["d"], p["margin"])
     q = p["F"] * piece.deflection()
     rows = [piece.row_state(q, row) for row in range(3)]
-    bending = np.array([utilisation(state, strength) for state in rows])
-    shear = np.array([out_of_plane_shear(state, strength) for state in rows])
-    field = _field(piece, q, strength)
+    bending = np.array([utilisation(state, ice) for state in rows])
+    shear = np.array([out_of_plane_shear(state, ice) for state in rows])
+    field = _field(piece, q, ice)
     quantities = [
         *_place(p, piece, field, known),
         *_rows(bending, shear, known),
@@ -86,10 +87,10 @@ def _across(p: dict[str, Any], cells: int) -> Array:
     return np.asarray((np.arange(cells) + 0.5) * p["d"] - 0.5 * p["width"])
 
 
-def _field(piece: Piece, q: Array, strength: Strength) -> Array:
+def _field(piece: Piece, q: Array, ice: Ice) -> Array:
     """Utilisation of all intact cells, nan where cut, (nx - 1, ny - 1)."""
     state = CellState.of(piece.grid, np.zeros((piece.grid.nodes, 2)), q)
-    return np.where(piece.intact, utilisation(state, strength).reshape(piece.intact.shape), np.nan)
+    return np.where(piece.intact, utilisation(state, ice).reshape(piece.intact.shape), np.nan)
 
 
 def _place(p: dict[str, Any], piece: Piece, field: Array, known: bool) -> list[Quantity]:

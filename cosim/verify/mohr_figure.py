@@ -8,10 +8,10 @@ import numpy as np
 
 from cosim.verify.case import Figure
 from cosim.verify.mohr_record import Record
-from lattice.criteria import mohr_factors
+from lattice.criteria.laws import BETA, INTERCEPT, SLOPE
+from lattice.criteria.mohr import mohr_factors
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import BETA, INTERCEPT, SLOPE
 
 TOP, BOTTOM, FAILING = "tab:blue", "0.62", "tab:orange"
 

@@ -26,6 +26,7 @@ from cosim.verify.mohr_figure import mohr_figure
 from cosim.verify.mohr_record import Record, Witness
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
+from lattice.sheet import Sheet
 
 PARAMETERS: dict[str, Any] = {"floe": "all"}
 
@@ -95,6 +96,7 @@ def _witness(scheduler: Scheduler) -> Witness:
     """The sheet of a run, exchanged for one that keeps the states in which its cells fail."""
     port = scheduler.sheet
     assert isinstance(port, SheetPort)
+    assert isinstance(port.sheet, Sheet)
     sheet = Witness.of(port.sheet)
     port.sheet = sheet
     return sheet

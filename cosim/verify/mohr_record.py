@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coupling.interface import NS, Event
-from lattice.criteria import cell_strains, mohr, tensile_limits, tensile_utilisation
-from lattice.engine import EdgeContact, State, Step
+from lattice.contact import EdgeContact
+from lattice.criteria.laws import shear_fault
+from lattice.criteria.mohr import Circle, faces, tensile_utilisation
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import shear_fault
+from lattice.implicit.step import Step
+from lattice.outcome import Outcome
 from lattice.sheet import Sheet
+from lattice.state import State
+from lattice.strain import CellState
 
 EVERY = 10  #: windows between two snapshots for the figure
 
 
 @dataclass(frozen=True)
 class Failure:
-    """A cell that fails: its circles (4,) as `criteria.mohr` [-] and its tensile limit then [Pa]."""
+    """A cell that fails."""
 
-    circle: Array
-    limit: float
+    circle: Array  #: mean and radius at the top, then at the bottom (4,) [-]
+    limit: float  #: its tensile limit then [Pa]
     located: bool  #: the first of its window; the others follow at the same instant
 
 
@@ -43,12 +48,12 @@ class Witness(Sheet):
 
     def circles(self, state: State) -> Array:
         """Mean and radius of all cells at the top and at the bottom, (cells, 4) [-]."""
-        strains = cell_strains(self.grid.cell_nodes, self.grid.d, state.u, state.q)
-        return np.asarray(mohr(strains, 0.5 * self.ice.h * self.ice.sigma_t / self.ice.sigma_f))
+        top, bottom = faces(CellState.of(self.grid, state.u, state.q).strains, self.ice)
+        return np.column_stack((*top, *bottom))
 
     def limits(self) -> Array:
         """Tensile limit of all cells, (cells,) [Pa]."""
-        return tensile_limits(self.grid, self.live_cells, self.ice)
+        return self.standing.limit
 
     def _utilisation(self, state: State) -> Array:
         self._judged = state
@@ -59,11 +64,13 @@ class Witness(Sheet):
         self._located = True
         return found
 
-    def _fail(self, cell: int) -> None:
-        failure = Failure(self.circles(self._judged)[cell], float(self.limits()[cell]), self._located)
-        self.failures.append(failure)
-        self._located = False
-        super()._fail(cell)
+    def fail(self, cells: Sequence[int], causes: Sequence[str], state: State, out: Outcome) -> None:
+        """Keep the states of these cells, then let them go."""
+        for cell in cells:
+            failure = Failure(self.circles(self._judged)[cell], float(self.limits()[cell]), self._located)
+            self.failures.append(failure)
+            self._located = False
+        super().fail(cells, causes, state, out)
 
 
 class Record:
@@ -97,12 +104,12 @@ class Record:
 
     def utilisation(self, circle: Array, limit: Array | float) -> Array:
         """(4.6) at the worse face."""
-        top, bottom = (tensile_utilisation(circle[:, k], circle[:, k + 1], limit, self.ice) for k in (0, 2))
+        top, bottom = (tensile_utilisation(Circle(*circle[:, k : k + 2].T), limit, self.ice) for k in (0, 2))
         return np.maximum(top, bottom)
 
     def _shear(self, circle: Array) -> Array:
         """(4.5) at the worse face."""
-        return np.maximum(*(shear_fault(circle[:, k], circle[:, k + 1], self.ice) for k in (0, 2)))
+        return np.maximum(*(shear_fault(Circle(*circle[:, k : k + 2].T), self.ice) for k in (0, 2)))
 
     def quadrants(self, circle: Array) -> Array:
         """States in T-T, T-C and C-C, both faces counted, (3,)."""
@@ -122,6 +129,6 @@ class Record:
 
     def failing_circles(self, located: bool) -> Array:
         """Mean and radius times E of failing cells at their worse face, (k, 2) [Pa]."""
-        faces = [f.circle.reshape(2, 2) for f in self.failures if f.located == located]
-        use = [tensile_utilisation(c[:, 0], c[:, 1], self.ice.sigma_t, self.ice) for c in faces]
-        return np.array([c[np.argmax(u)] for c, u in zip(faces, use, strict=True)]).reshape(-1, 2) * self.ice.E
+        circles = [f.circle.reshape(2, 2) for f in self.failures if f.located == located]
+        use = [tensile_utilisation(Circle(*c.T), self.ice.sigma_t, self.ice) for c in circles]
+        return np.array([c[np.argmax(u)] for c, u in zip(circles, use, strict=True)]).reshape(-1, 2) * self.ice.E

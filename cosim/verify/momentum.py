@@ -7,7 +7,10 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near
-from rubble.geometry import Array, place
+from rubble.arrays import Array, rows
+from rubble.block import Slab
+from rubble.cut import plane
+from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -51,18 +54,17 @@ def collide(p: dict[str, Any], turned: float, offset: float) -> tuple[Array, Arr
         middle = x * np.cos(angle) + z * np.sin(angle)
         layer.add_block(
             0,
-            place(box(size), x, z, angle, 0.0, 0.0),
-            middle + np.array([-size[0], size[0]]) / 2,
-            np.array([1.0]),
-            p["rho_i"],
+            Slab(
+                place(box(size), x, z, angle, 0.0, 0.0),
+                middle + np.array([-size[0], size[0]]) / 2,
+                np.array([1.0]),
+                p["rho_i"],
+                angle,
+            ),
             (v, -0.3 * v if turned else 0.0),
-            0.0,
-            0.0,
-            0,
-            angle,
         )
     before = _motion(layer)
-    while not layer.section(0).sums[:, 5].any():
+    while not layer.section(0).sums.block["ice"].any():
         layer.advance(1)
     outline, t = layer.block(0).outline, layer.table()
     tip = outline[np.argmax(outline[:, 0])]
@@ -105,29 +107,28 @@ def pile_balance(p: dict[str, Any], substeps: int) -> tuple[float, float]:
     """
     physics = RubblePhysics(rho_i=p["rho_i"], rho_w=p["rho_w"], thickness=3.0, added_mass=0.2, restitution=p["e"])
     face = np.array([(30.0, -30.0), (-5.0, 5.0)])
-    layer = RubbleLayer(physics, 3.0, solids=lambda _: convex_parts(face, back=60.0))
+    layer = RubbleLayer(physics, 3.0, solids=lambda _: plane(convex_parts(face, back=60.0)))
     for i in range(12):
         x, z = -4.0 - 5.0 * (i % 4), -4.0 - 4.0 * (i // 4)
         layer.add_block(
             0,
-            place(box((4.0, 2.5)), x, z, 0.0, 0.0, 0.0),
-            np.array([x - 2.0, x + 2.0]),
-            np.array([3.0]),
-            p["rho_i"],
+            Slab(
+                place(box((4.0, 2.5)), x, z, 0.0, 0.0, 0.0), np.array([x - 2.0, x + 2.0]), np.array([3.0]), p["rho_i"]
+            ),
             (1.0, 0.2 * (-1) ** i),
-            0.0,
-            0.0,
-            0,
         )
     own, structure, scale = layer.section(0), np.zeros(2), 0.0
     start = _carried(layer)
     for _ in range(substeps // 10):
-        water = own.losses[1:3].copy()
+        water = rows(own.sums.water, "impulse_x", 2)[0].copy()
         layer.advance(10)
-        structure += own.sums[:, :2].sum(axis=0)
-        scale += float(np.abs(own.losses[1:3] - water).sum())
+        structure += rows(own.sums.block, "structure_x", 2).sum(axis=0)
+        scale += float(np.abs(rows(own.sums.water, "impulse_x", 2)[0] - water).sum())
     gained = _carried(layer) - start
-    errors = [float(np.abs(gained - own.losses[1:3] + sign * structure).max()) / scale for sign in (1.0, -1.0)]
+    errors = [
+        float(np.abs(gained - rows(own.sums.water, "impulse_x", 2)[0] + sign * structure).max()) / scale
+        for sign in (1.0, -1.0)
+    ]
     return errors[0], errors[1]
 
 

@@ -7,7 +7,11 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near, value
-from rubble.geometry import Array, place
+from rubble.arrays import Array
+from rubble.block import Slab
+from rubble.cut import plane
+from rubble.energy import mechanical_energy
+from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 
@@ -46,7 +50,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
         form_drag=5.0,
         thickness=p["h"],
     )
-    layer = RubbleLayer(physics, p["width"], solids=lambda _: bin_of(10.0))
+    layer = RubbleLayer(physics, p["width"], solids=lambda _: plane(bin_of(10.0)))
     random, size = np.random.default_rng(int(p["seed"])), np.array([p["length"], p["h"]])
     outline = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * size / 2.0
     for i in range(int(p["blocks"])):
@@ -54,20 +58,18 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
         middle = x * np.cos(angle) + z * np.sin(angle)
         layer.add_block(
             0,
-            place(outline, x, z, angle, 0.0, 0.0),
-            middle + np.array([-0.5, 0.5]) * size[0],
-            np.array([p["width"]]),
-            p["rho_i"],
-            (0.0, 0.0),
-            0.0,
-            0.0,
-            0,
-            angle,
+            Slab(
+                place(outline, x, z, angle, 0.0, 0.0),
+                middle + np.array([-0.5, 0.5]) * size[0],
+                np.array([p["width"]]),
+                p["rho_i"],
+                angle,
+            ),
         )
     layer.advance(round((60.0 if quick else p["time"]) / physics.substep))
     layer.advance(200)
     weight = layer.mass * (p["rho_w"] / p["rho_i"] - 1.0) * p["g"]
-    force, table, energy = layer.load_on_structure.sum(axis=0), layer.table(), layer.energy
+    force, table, energy = layer.load_on_structure.sum(axis=0), layer.table(), mechanical_energy(layer)
     depth = float(-table.position[:, 2] @ table.mass) / layer.mass
     moving = (energy["kinetic"] + energy["added"]) / (weight * depth)
     return CaseResult(

@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, near, value
-from rubble.geometry import Array
+from rubble.arrays import Array
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.rig import thrust
@@ -33,12 +35,12 @@ def pushed(p: dict[str, Any], count: int, seconds: float) -> Array:
         rho_i=p["rho_i"], rho_w=p["rho_w"], g=p["g"], thickness=p["h"], iterations=int(p["iterations"])
     )
     wall = np.array([(0.0, -30.0), (10.0, -30.0), (10.0, 30.0), (0.0, 30.0)])
-    layer = RubbleLayer(physics, p["width"], solids=lambda _: [wall])
+    layer = RubbleLayer(physics, p["width"], solids=lambda _: plane([wall]))
     low, a = -p["h"] * p["rho_i"] / p["rho_w"], p["length"]
     for i in range(count):
         x = -a * i
         outline = np.array([(x - a, low), (x, low), (x, low + p["h"]), (x - a, low + p["h"])])
-        layer.add_block(0, outline, np.array([x - a, x]), np.array([p["width"]]), p["rho_i"], (0.0, 0.0), 0.0, 0.0, 0)
+        layer.add_block(0, Slab(outline, np.array([x - a, x]), np.array([p["width"]]), p["rho_i"]))
     thrust(layer, count - 1, p["force"])
     force = []
     for _ in range(round(seconds / p["window"])):

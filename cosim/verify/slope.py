@@ -9,6 +9,8 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, at_most, near
 from coupling.structure import plane_slope
+from rubble.block import Slab
+from rubble.cut import plane as plane_cut
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
@@ -43,7 +45,9 @@ def slide(p: dict[str, Any], mu: float, slope: float, wet: bool) -> tuple[float,
     a, up = radians(slope), -1.0 if wet else 1.0
     plane = plane_slope(a, top=120.0, toe_depth=120.0, breaking="downward" if wet else "upward")
     layer = RubbleLayer(
-        physics, WIDTH, solids=lambda y: convex_parts(plane.section_outline(y, plane.bottom, plane.top), back=1e4)
+        physics,
+        WIDTH,
+        solids=lambda y: plane_cut(convex_parts(plane.section(y, plane.bottom, plane.top, 0.01)[0], back=1e4)),
     )
     z = up * 100.0
     box = np.array([(-LENGTH / 2, 0.0), (LENGTH / 2, 0.0), (LENGTH / 2, HEIGHT), (-LENGTH / 2, HEIGHT)])
@@ -51,18 +55,7 @@ def slide(p: dict[str, Any], mu: float, slope: float, wet: bool) -> tuple[float,
     x, z = float(plane.face_x(0.0, z)) + physics.slop / 2 * sin(a), z - up * physics.slop / 2 * cos(a)  # in contact
     outline = place(box, x, z, turn, 0.0, 0.0)
     middle = x * np.cos(turn) + z * np.sin(turn)
-    layer.add_block(
-        0,
-        outline,
-        middle + np.array([-LENGTH / 2, LENGTH / 2]),
-        np.array([WIDTH]),
-        p["rho_i"],
-        (0.0, 0.0),
-        0.0,
-        0.0,
-        0,
-        turn,
-    )
+    layer.add_block(0, Slab(outline, middle + np.array([-LENGTH / 2, LENGTH / 2]), np.array([WIDTH]), p["rho_i"], turn))
     speeds = []
     for _ in range(2):
         layer.advance(round(TIME / 2 / physics.substep))

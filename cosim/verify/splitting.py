@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, limited, near, value
+from lattice.criteria.laws import crack_tip_splitting
 from lattice.edge_crack import normalised_load
 from lattice.grid import Array
 from lattice.ice import Ice
-from lattice.limits import Strength, crack_tip_splitting
 from lattice.specimens import EdgeCrack
 
 PARAMETERS: dict[str, Any] = {
@@ -33,18 +33,26 @@ RATIOS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
 SOURCE = "van Vliet (2018), section 4.2.1"
 
 
-def _strength(p: dict[str, Any], d: float) -> Strength:
+def _ice(p: dict[str, Any], d: float) -> Ice:
     sigma_t = float(np.sqrt(2.0 / (np.pi * d)) * p["K_IC"])  # (4.22) stands for sigma_t, (4.23)
-    ice = Ice(E=p["E"], nu=p["nu"], h=p["h"], rho_i=920.0, rho_w=1025.0, sigma_t=sigma_t, sigma_c=p["ratio"] * sigma_t)
-    return Strength(ice, K_IC=p["K_IC"])
+    return Ice(
+        E=p["E"],
+        nu=p["nu"],
+        h=p["h"],
+        rho_i=920.0,
+        rho_w=1025.0,
+        sigma_t=sigma_t,
+        sigma_c=p["ratio"] * sigma_t,
+        K_IC=p["K_IC"],
+    )
 
 
 def critical(p: dict[str, Any], cells: int, cut: int) -> tuple[float, Array]:
     """Force at which a crack of ``cut`` cells runs on [N] and the opening along the crack line then [m]."""
-    strength = _strength(p, p["L"] / cells)
-    specimen = EdgeCrack(strength.ice, p["L"], cells, cut)
+    ice = _ice(p, p["L"] / cells)
+    specimen = EdgeCrack(ice, p["L"], cells, cut)
     u = specimen.displacement()
-    force = 1.0 / float(crack_tip_splitting(specimen.tip_state(u), strength)[0])
+    force = 1.0 / float(crack_tip_splitting(specimen.tip_state(u), ice)[0])
     return force, force * specimen.opening(u)
 
 
@@ -52,7 +60,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     """Load at which the crack runs and its opening; ``quick``: a coarser exact solution."""
     cells = int(p["cells"])
     cut = round(p["a"] / p["L"] * cells)
-    EdgeCrack(_strength(p, p["L"] / cells).ice, p["L"], cells, cut)  # refuses a crack that leaves the plate
+    EdgeCrack(_ice(p, p["L"] / cells), p["L"], cells, cut)  # refuses a crack that leaves the plate
     known = p == PARAMETERS
     force, opening = critical(p, cells, cut)
     quantities = _resolute(p, force, opening, cut, known)

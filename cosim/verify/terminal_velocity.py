@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, near
+from rubble.block import Slab
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 
@@ -39,7 +40,7 @@ def speed(p: dict[str, Any], rho: float) -> float:
     layer = RubbleLayer(physics, p["width"])
     x, h, z = p["length"] / 2.0, p["h"] / 2.0, -5000.0
     outline = np.array([(-x, z - h), (x, z - h), (x, z + h), (-x, z + h)])
-    layer.add_block(0, outline, np.array([-x, x]), np.array([p["width"]]), rho, (0.0, 0.0), 0.0, 0.0, 0)
+    layer.add_block(0, Slab(outline, np.array([-x, x]), np.array([p["width"]]), rho))
     last = 0.0
     while True:
         layer.advance(200)

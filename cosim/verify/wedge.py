@@ -16,7 +16,9 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, near, value
 from coupling.structure import plane_slope
-from rubble.geometry import Array
+from rubble.arrays import Array
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -92,7 +94,7 @@ def _rig(p: dict[str, Any], length: float, backfill: str) -> tuple[RubbleLayer, 
     layer = RubbleLayer(
         physics,
         pitch=2.0 * length,
-        solids=lambda y: convex_parts(slope.section_outline(y, slope.bottom, slope.top), back=500.0),
+        solids=lambda y: plane(convex_parts(slope.section(y, slope.bottom, slope.top, 0.01)[0], back=500.0)),
     )
     cot = 1.0 / tan(radians(p["slope"]))
     tip = cot * (draft - thick) - 0.01  # its upper corner just ahead of the slope
@@ -100,7 +102,7 @@ def _rig(p: dict[str, Any], length: float, backfill: str) -> tuple[RubbleLayer, 
     widths = (tip - (x[1:] + x[:-1]) / 2.0) * radians(p["angle"])
     z = -draft
     outline = np.array([(x[0], z), (tip, z), (tip, z + thick), (x[0], z + thick)])
-    block = layer.add_block(0, outline, x, widths, p["rho_i"] * p["h"] / thick, (p["speed"], 0.0), 0.0, 0.0, 0)
+    block = layer.add_block(0, Slab(outline, x, widths, p["rho_i"] * p["h"] / thick), (p["speed"], 0.0))
     return layer, block, Hinge(layer, 0, block, x[0], z, (p["speed"], 0.0))
 
 

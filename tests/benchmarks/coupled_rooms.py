@@ -13,6 +13,7 @@ more threads the loops of the sections overlap; their sum is then divided by the
 from __future__ import annotations
 
 import argparse
+import copy
 import functools
 import os
 import tempfile
@@ -35,13 +36,15 @@ from coupling.ledger import Ledger
 from coupling.rubble_port import RubblePort
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
+from coupling.sheet_port.front import Front
 from lattice.energy import EnergyBooks
-from lattice.engine import Engine
-from lattice.linear import CrackedSystem
+from lattice.implicit.edge import Edge
+from lattice.implicit.engine import Engine
+from lattice.implicit.linear import CrackedSystem
 from lattice.sheet import Sheet
 from rubble.contacts import accumulate
 from rubble.layer import RubbleLayer
-from rubble.section import _BODY, _NO_NODES, Section
+from rubble.section import Section
 from rubble.water import apply_water
 
 #: room: doors, (where, name)
@@ -56,11 +59,11 @@ DOORS = {
     "failure checks": [(Sheet, "_utilisation"), (Sheet, "_cells"), (Sheet, "_release_loose"), (Sheet, "_locate")],
     "edge contact": [
         (OverlapContact, "evaluate"),
-        (OverlapContact, "settle"),
-        (Engine, "_contact_force"),
-        (SheetPort, "_crush"),
+        (OverlapContact, "close_window"),
+        (Edge, "force"),
+        (Front, "crush"),
     ],
-    "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_fragment"), (SheetPort, "_renew_edge")],
+    "hand-over": [(Scheduler, "hand_over"), (SheetPort, "_release"), (Front, "renew")],
     "rubble": [(RubbleLayer, "advance")],
     "exchange": [
         (SheetPort, "edges"),
@@ -74,7 +77,7 @@ DOORS = {
         (EnergyBooks, "book_served"),
         (EnergyBooks, "loss_rate"),
         (Ledger, "close_window"),
-        (SheetPort, "_crushed_edge"),
+        (Front, "_crushed_now"),
         (lattice.sheet, "between"),
         (coupling.scheduler, "force_budget"),
         (rubble.layer.table, "budget"),
@@ -112,7 +115,7 @@ class Clock:
 
     def loop_door(self) -> None:
         """At the compiled loop of a section, which may run in a thread."""
-        inner = Section._run
+        inner = Section._substeps
 
         def timed(section: Section, n: int) -> int:
             start = time.perf_counter()
@@ -129,7 +132,7 @@ class Clock:
                     self._inside[-1] += time.perf_counter() - look  # not part of any room
             return done
 
-        Section._run = timed
+        Section._substeps = timed
 
 
 def best(call, repeat: int = 5) -> float:
@@ -143,33 +146,23 @@ def best(call, repeat: int = 5) -> float:
 
 def kernels(s: Section) -> dict[str, float]:
     """Time of water and contacts in one sub-step of a section as it is now, on copies, without the cost of a call."""
-    reader, nodes = s._reader, s.sheet.nodes.copy() if s.sheet else _NO_NODES
-    flooded, losses, sums, heavy, sheet = (a.copy() for a in (s._flooded, s.losses, s.sums, s.heavy, s.sheet_sums))
+    tables, own = s.tables, copy.deepcopy(s.sums)
+    own.make_room(s.meeting().pairs.list["room"][0])
+    sums = own.for_kernels(None if s.sheet is None else s.sheet.nodes.copy())
+    hulls = tables.hulls._replace(flooded=tables.hulls.flooded.copy(), pressure=tables.hulls.pressure.copy())
+    meeting, work = s.meeting(), sums.work
+    nobody = tables.bodies._replace(blocks=0)
+    nothing = meeting._replace(pairs=meeting.pairs._replace(list=np.zeros_like(meeting.pairs.list)))
 
-    def water(dead):
-        apply_water(s._edges, s._offset, dead, s.water, flooded, s._state, s._bodies, _BODY, s._pressure.copy(), losses)
+    def water(bodies):
+        apply_water(hulls, bodies, s.water, work.water[0], work.impulse[0])
 
-    def contacts(header):
-        accumulate(
-            header,
-            reader.pairs,
-            reader.layout,
-            s._addresses,
-            s._slots,
-            s._state,
-            s._friction.structure,
-            s.side,
-            s._limit,
-            sheet,
-            sums,
-            nodes,
-            heavy,
-        )
+    def contacts(who):
+        accumulate(who, tables.bodies, sums.impulses)
 
-    none = np.zeros(3, np.int64)
     return {
-        "water": max(best(lambda: water(s._dead)) - best(lambda: water(s._dead[:0])), 0.0),
-        "contacts": max(best(lambda: contacts(reader.header)) - best(lambda: contacts(none)), 0.0),
+        "water": max(best(lambda: water(tables.bodies)) - best(lambda: water(nobody)), 0.0),
+        "contacts": max(best(lambda: contacts(meeting)) - best(lambda: contacts(nothing)), 0.0),
     }
 
 

@@ -35,7 +35,8 @@ from threadpoolctl import threadpool_limits
 
 from cosim.build import build
 from cosim.scenario.loading import load_scenario
-from lattice.criteria import cell_strains, combined_utilisation, tensile_limits
+from lattice.criteria.laws import combined_tension
+from lattice.strain import CellState
 
 FLOE = Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_165m"
 RTOL, ATOL = 1e-8, 1e-10
@@ -108,7 +109,7 @@ class Floe:
     def __init__(self, port):
         sheet, e, c = port.sheet, port.sheet.engine, port.contact
         nodes, self.grid, self.ice, self.alpha = sheet.grid.cell_nodes, sheet.grid, sheet.ice, e.alpha
-        self.live, self.limits = sheet.live_cells.copy(), tensile_limits(sheet.grid, sheet.live_cells, sheet.ice)
+        self.live, self.limits = sheet.live_cells.copy(), sheet.standing.limit
         self.springs = [
             ((nodes[:, :, None] * 5 + part).reshape(len(nodes), -1), *sparse_rows(rows))
             for part, rows in ((np.arange(2), e.rows_u), (np.arange(2, 5), e.rows_q))
@@ -155,10 +156,8 @@ class Floe:
     def utilisation(self, y):
         """Largest of the live cells."""
         x = self.parts(y)[0].reshape(-1, 5)
-        strains = cell_strains(
-            self.grid.cell_nodes, self.grid.d, np.ascontiguousarray(x[:, :2]), np.ascontiguousarray(x[:, 2:])
-        )
-        return float((combined_utilisation(strains, self.limits, self.ice) * self.live).max())
+        state = CellState.of(self.grid, x[:, :2], x[:, 2:], limit=self.limits)
+        return float((combined_tension(state, self.ice) * self.live).max())
 
 
 def engine_run():

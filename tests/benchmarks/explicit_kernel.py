@@ -21,16 +21,17 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
-from lattice.explicit import ExplicitEngine
+from lattice.explicit.engine import ExplicitEngine
+from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.kernels import sweep
+from lattice.explicit.screen import overloaded
 from lattice.grid import Grid
 from lattice.ice import Ice
-from lattice.kernels import overloaded, sweep
-from lattice.march import NodeForces
 from lattice.stiffness import hrennikoff
 
 SIZES = (60, 120, 240, 480)
 ICE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0, sigma_t=750e3, sigma_f=750e3, sigma_c=4e6)
-FLOPS = {"sweep": 130, "march": 130 + 69}  #: per node, counted in `lattice.kernels`: connections 58, gather 72
+FLOPS = {"sweep": 130, "march": 130 + 69}  #: per node, counted in `lattice.explicit.kernels`: connections 58, gather 72
 BYTES = {"sweep": 8 * (4 * 5 + 3 + 1), "march": 8 * (4 * 5 + 3 + 1) + 8 * (2 * 4 + 1)}
 REPEATS = 7
 DEGREE = 16
@@ -105,30 +106,30 @@ def engine(n: int) -> ExplicitEngine:
         damping=500.0,
         step=1e-4,
     )
-    e.v[:, :n, :n] = 1e-6 * np.random.default_rng(1).standard_normal((5, n, n))
+    e.motion.v[:, :n, :n] = 1e-6 * np.random.default_rng(1).standard_normal((5, n, n))
     return e
 
 
 def working_set(e: ExplicitEngine) -> int:
     """Bytes that a sub-step touches."""
-    return e.y.nbytes + e.v.nbytes + e._kick.nbytes + e._cells.nbytes + e._limit.nbytes
+    return sum(a.nbytes for a in (*e.motion, *e.mesh.kick, e.mesh.intact, e.mesh.threshold))
 
 
 def rates(n: int) -> dict[str, float]:
     """Node-steps per second."""
     e, steps = engine(n), max(4, 10_000_000 // n**2)
-    none = np.zeros((2, 0), np.int64)
-    load, touch = NodeForces(*none, np.zeros((0, 5))), NodeForces(*none, np.zeros((0, 3)))
+    none = np.zeros((0, 3))
+    touch, mesh = Touch(*np.zeros((2, 0), np.int64), np.zeros(0), none, none, np.zeros((0, 3, 3))), e.mesh
 
     def sweeps() -> None:
         for _ in range(steps):
-            sweep(e.y, e.v, e._cells, e._kick, e._spring, e._pace, e._rows)
+            sweep(e.motion, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
 
     out = {}
-    for name, f in (("sweep", sweeps), ("march", lambda: e.march(steps, load, touch, False))):
+    for name, f in (("sweep", sweeps), ("march", lambda: e.march(steps, NOTHING, touch, False))):
         f()
         out[name] = n * n * steps / best(f)
-    assert overloaded(e.y, e.v, e._limit, e._crack, e.alpha) == 0, "the motion of the benchmark broke the floe"
+    assert overloaded(e.motion, mesh.threshold, e.screen, e.alpha) == 0, "the motion of the benchmark broke the floe"
     return out
 
 

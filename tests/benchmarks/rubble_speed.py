@@ -17,6 +17,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pymunk
 
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
@@ -54,21 +56,12 @@ def outlines(section: int) -> list[tuple[np.ndarray, float]]:
 
 
 def our_layer(threads: int) -> RubbleLayer:
-    layer = RubbleLayer(PHYSICS, WIDTH, solids=lambda y: BIN, threads=threads)
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=lambda y: plane(BIN), threads=threads)
     for key in range(SECTIONS):
         for outline, angle in outlines(key):
             middle = float(outline.mean(axis=0) @ [np.cos(angle), np.sin(angle)])
             layer.add_block(
-                key,
-                outline,
-                middle + np.array([-0.5, 0.5]) * SIZE[0],
-                np.array([WIDTH]),
-                846.0,
-                (0.0, 0.0),
-                0.0,
-                layer.centre(key),
-                0,
-                angle,
+                key, Slab(outline, middle + np.array([-0.5, 0.5]) * SIZE[0], np.array([WIDTH]), 846.0, angle)
             )
     return layer
 
@@ -135,7 +128,7 @@ def measure(settle: float, seconds: float, repeat: int) -> dict[str, float]:
     for _ in range(repeat):
         for name, what in made.items():
             best[name] = max(best[name], factor(what, seconds))
-    contacts = sum(int(s._reader.header[0]) for s in made["layer_1"].sections.values())
+    contacts = sum(s._reader.count for s in made["layer_1"].sections.values())
     pairs = (
         sum(len(s._get_arbiters()) for s in made["plain_1"].spaces),
         sum(len(s.space._get_arbiters()) for s in made["layer_1"].sections.values()),

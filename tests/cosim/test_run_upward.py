@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cosim.build import build, build_structure, structure_mesh
+from cosim.build import build, build_structure
 from cosim.run import run_scenario
 from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
@@ -54,7 +54,7 @@ def test_mass_closes_and_no_block_stands_in_the_structure(case, request):
     layer = scheduler.rubble.layer
     for section in layer.sections.values():
         for block in section.blocks:
-            deep = overlap_area(block.outline, section.solids)
+            deep = overlap_area(block.outline, section.cut.polygons)
             assert deep < 4.0 * layer.physics.slop * np.sqrt(block.prism.area), block.outline
 
 
@@ -100,12 +100,12 @@ def test_a_strip_breaks_at_croasdales_load():
 def test_a_sheet_that_leaves_the_water_is_an_event():
     scheduler = build(load_scenario(PLANE, STRIP))
     port = scheduler.sheet
-    assert port.draft == pytest.approx(0.5 * 916.2 / 999.8)
-    port.sheet.state.q[:, 0] = 1.01 * port.draft
-    (event,) = port._lifted_out(np.zeros(3))
+    assert port.watch.draft == pytest.approx(0.5 * 916.2 / 999.8)
+    port.sheet.state.q[:, 0] = 1.01 * port.watch.draft
+    (event,) = port.watch.lifted_out(np.zeros(3))
     assert event.kind == "out_of_water"
     assert "draft of 0.46 m" in event.text
-    assert port._lifted_out(np.zeros(3)) == []
+    assert port.watch.lifted_out(np.zeros(3)) == []
 
 
 @pytest.mark.parametrize(
@@ -138,11 +138,11 @@ def test_old_files_break_downwards():
 @pytest.mark.parametrize("name", [PLANE, CONE])
 def test_the_mesh_is_the_structure(name):
     structure = build_structure(load_scenario(name))
-    points, triangles = structure_mesh(structure, 20.0)
+    points, triangles = structure.mesh(20.0)
     assert points[:, 2].max() == structure.top
     assert triangles.max() < len(points)
     x = structure.face_x(0.0, points[:, 2])
-    front = points[np.abs(points[:, 1]) < 1e-6] if structure.revolved else points
+    front = points[np.abs(points[:, 1]) < 1e-6] if structure.half_width < np.inf else points
     assert np.abs(front[:, 0]).max() == pytest.approx(np.abs(x).max())
     low, high = points[points[:, 2] < -1.0, 0].min(), points[points[:, 2] == structure.top, 0].min()
     assert low < high  # the face leans back
@@ -151,7 +151,7 @@ def test_the_mesh_is_the_structure(name):
 @pytest.mark.parametrize("y", [0.0, 0.5, 1.5])
 def test_sections_of_an_upward_cone_are_solid_up_to_its_shaft(y):
     shape = cone(np.radians(60), 2.5, 0.75, toe_depth=4.0, top=8.0, breaking="upward")
-    parts = convex_parts(shape.section_outline(y, -4.0, 8.0, OUTLINE_TOLERANCE))
+    parts = convex_parts(*shape.section(y, -4.0, 8.0, OUTLINE_TOLERANCE))
     top = max(float(p[:, 1].max()) for p in parts)
     neck = (2.5 - 0.75) * np.sqrt(3.0)
     assert top == pytest.approx(8.0 if y < 0.75 else (2.5 - y) * np.sqrt(3.0), abs=1e-2)

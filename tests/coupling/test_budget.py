@@ -9,12 +9,15 @@ from cosim.build import build
 from cosim.scenario.loading import load_scenario
 from coupling.budget import AXES, TERMS, force_budget
 from coupling.rubble_port import RubblePort
-from lattice.engine import NoContact
+from lattice.contact import NoContact
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -25,7 +28,9 @@ LIFT = (RHO_W - RHO_I) * G * LENGTH * H * WIDTH  #: of a flooded block under wat
 
 
 def layer_with(solids, **physics):
-    return RubbleLayer(RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, **physics), WIDTH, solids=lambda y: solids)
+    return RubbleLayer(
+        RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, **physics), WIDTH, solids=lambda y: plane(solids)
+    )
 
 
 def add(layer, x, z, angle=0.0, flooded=None):
@@ -34,15 +39,13 @@ def add(layer, x, z, angle=0.0, flooded=None):
     middle = x * c + z * s
     layer.add_block(
         0,
-        BOX @ np.array([(c, s), (-s, c)]) + [x, z],
-        middle + np.array([-0.5, 0.5]) * LENGTH,
-        np.array([WIDTH]),
-        RHO_I,
-        (0.0, 0.0),
-        0.0,
-        0.0,
-        0,
-        angle,
+        Slab(
+            BOX @ np.array([(c, s), (-s, c)]) + [x, z],
+            middle + np.array([-0.5, 0.5]) * LENGTH,
+            np.array([WIDTH]),
+            RHO_I,
+            angle,
+        ),
         flooded=flooded,
     )
 
@@ -93,8 +96,9 @@ def press(sheet, down, ahead, windows, tolerance):
     for k in range(windows):
         force_u, force_q = np.zeros((sheet.grid.nodes, 2)), np.zeros((sheet.grid.nodes, 3))
         force_u[:, 0], force_q[:, 0] = ahead, -down
-        r = sheet.advance(0.05 * k, force_u, force_q, NoContact(), lambda nodes: None).reaction
-        parts = np.array([r.foundation, r.drag, r.inertia, r.held, r.applied])
+        load = NodeLoad("load", force_u, force_q)
+        r = sheet.advance(0.05 * k, [load], NoContact(), lambda nodes: None).reaction
+        parts = np.array([r.foundation, r.drag, r.inertia, r.held, r.applied["load"]])
         assert np.abs(parts.sum(axis=0)).max() < tolerance * down.sum()
     return r
 
@@ -109,7 +113,7 @@ def test_a_sheet_pressed_down_and_pushed_ahead(long_step):
     sheet = Sheet(grid, ice, hrennikoff(ice), 0.05, held=held, damping=2e4, alpha=1e-2, long_step=long_step)
     down, ahead = 100.0 * grid.area, 50.0 * grid.area
     r = press(sheet, down, ahead, windows=400, tolerance=1e-7)
-    assert r.applied == pytest.approx((ahead.sum(), -down.sum()), rel=1e-12)
+    assert r.applied["load"] == pytest.approx((ahead.sum(), -down.sum()), rel=1e-12)
     assert r.foundation[1] == pytest.approx(down.sum(), rel=1e-4)
     assert r.held[0] == pytest.approx(-ahead.sum(), rel=1e-4)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coupling.edge import CrushedEdge
+from coupling.sheet_port.crushed_edge import CrushedEdge
 
 NX, NY, D, H = 6, 4, 2.0, 3.0
 

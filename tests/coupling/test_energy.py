@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
+from coupling.contact_friction import friction_part
 from coupling.energy import LIMIT, STORES, EnergyBalance, residual_of
-from coupling.friction_share import friction_part
 from coupling.interface import SimulationError
 from coupling.structure import cone, plane_slope
 

@@ -36,7 +36,7 @@ def picture(s, windows):
 
 
 def set_back(s, saved, t_ns):
-    s.restore(saved[0])
+    saved[0]()
     s.t_ns, s.jump, s.power = t_ns, saved[1], copy(saved[2])
 
 

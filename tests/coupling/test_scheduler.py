@@ -1,14 +1,14 @@
 """The macro step as a drawing: who ran when, with what."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from coupling.interface import BlockTable, SheetForces, SimulationError
+from coupling.interface import BlockTable, HandOver, SheetForces, SheetReport, SimulationError
 from coupling.ledger import Ledger
-from coupling.rubble_port import HandOver
 from coupling.scheduler import Scheduler
 from coupling.schemes import SCHEMES, Iteration
-from coupling.sheet_port import SheetReport
 
 
 class StubSheet:
@@ -18,11 +18,13 @@ class StubSheet:
         self.trace, self.mass, self.crushed, self.energy, self.power = trace, 100.0, 0.0, {}, 0.0
 
     def save(self):
-        return self.mass
+        mass = self.mass
 
-    def restore(self, saved):
-        self.trace.append("set back")
-        self.mass = saved
+        def restore():
+            self.trace.append("set back")
+            self.mass = mass
+
+        return restore
 
     def advance(self, t_ns, window_ns, rubble, rubble_load):
         self.trace.append(f"sheet {t_ns}-{t_ns + window_ns} under {rubble.force.sum():g}")
@@ -51,10 +53,8 @@ class StubRubble:
         self.energy, self.momenta = {}, {}
 
     def save(self):
-        return self.mass, self.windows, self.force
-
-    def restore(self, saved):
-        self.mass, self.windows, self.force = saved
+        names = ("mass", "windows", "force")
+        return partial(vars(self).update, {name: getattr(self, name) for name in names})
 
     def add(self, fragment):
         self.trace.append(f"born {fragment}")
@@ -183,7 +183,7 @@ def test_a_fragment_of_a_repeated_window_is_booked_once():
     s.t_ns = 50
     s.move_sheet(SheetForces.none())
     assert (s.fragments, s.ledger.handed_over_mass, s.sheet.mass) == (1, 10.0, 90.0)
-    s.restore(start)
+    start()
     assert (s.fragments, s.ledger.handed_over_mass, s.sheet.mass, s.rubble.mass) == (0, 0.0, 100.0, 0.0)
 
 
@@ -196,4 +196,4 @@ def test_ice_that_gets_lost_stops_the_run():
 
 def test_momentum_that_gets_lost_stops_the_run():
     with pytest.raises(SimulationError, match="momentum of a hand-over"):
-        Ledger(100.0).hand_over(50, 10.0, 0.0, 1e-6, 0.0, 0.0)
+        Ledger(100.0).hand_over(50, HandOver(1, 10.0, 0.0, 1e-6))

@@ -5,27 +5,33 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from coupling.structure import Structure, cone, plane_slope
+from coupling.structure import Profile, Revolved, cone, plane_slope
 
 CONE = cone(np.pi / 4, 15.0, 5.0, toe_depth=20.0, top=5.0)
 
 
+def lateral_ratio(structure, y, x, z):
+    """Fy / Fx at a point of the face."""
+    a, b = structure.bearing(x, y, z)
+    return a + b * y / x
+
+
 def test_radius_narrows_with_depth_down_to_the_neck():
-    assert CONE.radius([5.0, 0.0, -4.0, -10.0, -15.0]) == pytest.approx([20.0, 15.0, 11.0, 5.0, 5.0])
-    assert np.isnan(CONE.radius([5.1, -20.1])).all()
+    assert CONE.profile.radius([5.0, 0.0, -4.0, -10.0, -15.0]) == pytest.approx([20.0, 15.0, 11.0, 5.0, 5.0])
+    assert np.isnan(CONE.profile.radius([5.1, -20.1])).all()
 
 
 def test_upward_breaking_cone_narrows_with_height():
     c = cone(np.radians(60), 10.0, 4.0, toe_depth=3.0, top=20.0, breaking="upward")
     z = np.array([-3.0, 0.0, 2.0, 15.0])
-    assert c.radius(z) == pytest.approx([10 + 3 / 3**0.5, 10.0, 10 - 2 / 3**0.5, 4.0])
+    assert c.profile.radius(z) == pytest.approx([10 + 3 / 3**0.5, 10.0, 10 - 2 / 3**0.5, 4.0])
     assert c.normal(0.0, 1.0)[2] > 0 > CONE.normal(0.0, -1.0)[2]
 
 
 @pytest.mark.parametrize("y", [0.0, 1e-3, 4.9, 5.0, 12.0, -12.0, 19.0])
 @pytest.mark.parametrize("tolerance", [0.3, 0.02])
 def test_section_outline_keeps_its_chord_error(y, tolerance):
-    outline = CONE.section_outline(y, -30.0, 30.0, tolerance)
+    outline = CONE.section(y, -30.0, 30.0, tolerance)[0]
     assert outline[:, 0] == pytest.approx(CONE.face_x(y, outline[:, 1].clip(-20, 5)), abs=1e-6)
     assert (np.diff(outline[:, 1]) > 0).all()
     for a, b in pairwise(outline):
@@ -36,7 +42,7 @@ def test_section_outline_keeps_its_chord_error(y, tolerance):
 
 
 def test_a_plane_beside_the_structure_has_no_outline():
-    assert CONE.section_outline(20.5, -30.0, 30.0).shape == (0, 2)
+    assert CONE.section(20.5, -30.0, 30.0, 0.01)[0].shape == (0, 2)
     assert np.isnan(CONE.face_x(12.0, -4.0))  # r = 11 m there: the section passes below the cone
 
 
@@ -59,19 +65,19 @@ def test_side_force_follows_from_three_dimensional_statics(y, z):
     x = float(CONE.face_x(y, z))
     assert force[0] > 0
     assert force[2] > 0 or z < -10
-    assert CONE.lateral_ratio(y, x, z) * force[0] == pytest.approx(force[1], rel=1e-12)
+    assert lateral_ratio(CONE, y, x, z) * force[0] == pytest.approx(force[1], rel=1e-12)
     assert np.sign(force[1]) == -np.sign(y)  # the structure is pushed to the middle, the ice away from it
 
 
 def test_side_force_is_sheer_of_the_plane_radius():
     r, y = 13.0, 5.0
-    assert CONE.lateral_ratio(y, -12.0, -2.0) == pytest.approx(-y / np.sqrt(r**2 - y**2), rel=1e-14)
+    assert lateral_ratio(CONE, y, -12.0, -2.0) == pytest.approx(-y / np.sqrt(r**2 - y**2), rel=1e-14)
 
 
 def test_side_forces_of_a_symmetric_ring_cancel_and_a_wrong_sign_does_not():
     y = np.linspace(-10, 10, 41)
     fx = 1.0 + 0 * y
-    ratio = CONE.lateral_ratio(y, CONE.face_x(y, -2.0), -2.0)
+    ratio = lateral_ratio(CONE, y, CONE.face_x(y, -2.0), -2.0)
     assert abs((fx * ratio).sum()) < 1e-12
     assert abs((fx * np.abs(ratio)).sum()) > 1.0
 
@@ -79,8 +85,8 @@ def test_side_forces_of_a_symmetric_ring_cancel_and_a_wrong_sign_does_not():
 def test_plane_slope_recedes_with_depth_and_has_no_side_force():
     s = plane_slope(np.pi / 4, top=3.0, toe_depth=10.0)
     assert s.face_x(99.0, [-10.0, 0.0, 3.0]) == pytest.approx([10.0, 0.0, -3.0])
-    assert s.section_outline(99.0, -5.0, 1.0) == pytest.approx(np.array([(5.0, -5.0), (-1.0, 1.0)]))
-    assert s.lateral_ratio(99.0, 1.0, -1.0) == 0.0
+    assert s.section(99.0, -5.0, 1.0, 0.01)[0] == pytest.approx(np.array([(5.0, -5.0), (-1.0, 1.0)]))
+    assert lateral_ratio(s, 99.0, 1.0, -1.0) == 0.0
     assert s.normal(3.0, -1.0) == pytest.approx([-(0.5**0.5), 0.0, -(0.5**0.5)])
 
 
@@ -97,8 +103,9 @@ def test_plane_slope_recedes_with_depth_and_has_no_side_force():
         (lambda: cone(1.0, 15.0, breaking="upward"), "needs toe_depth"),
         (lambda: cone(1.0, 15.0, breaking="sideways"), "'sideways'"),
         (lambda: plane_slope(2.0), "must lie between 0 and 90"),
-        (lambda: Structure(((0.0, 1.0), (-1.0, 2.0))), "z ascending"),
-        (lambda: CONE.section_outline(0.0, -1.0, 1.0, 0.0), "tolerance"),
+        (lambda: Profile(((0.0, 1.0), (-1.0, 2.0))), "z ascending"),
+        (lambda: Revolved(Profile(((0.0, 1.0), (1.0, -2.0)))), "radius -2 m"),
+        (lambda: CONE.section(0.0, -1.0, 1.0, 0.0), "tolerance"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(make, words):

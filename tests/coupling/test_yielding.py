@@ -6,7 +6,7 @@ import pytest
 from cosim.build import build
 from cosim.scenario.loading import load_scenario
 from coupling.interface import SimulationError
-from coupling.yielding import oscillator
+from coupling.sheet_port.yielding import oscillator
 
 WINDOW = 0.05
 HEAVY = ["sheet.nodes=[30,30]", "rubble.initial_volume='1500 m^3'", "scenario.duration='2 s'"]

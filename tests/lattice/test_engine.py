@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from lattice.assembly import assemble
-from lattice.engine import Engine, NoContact, State
+from lattice.contact import NoContact
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.implicit.engine import Engine
+from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
+from lattice.state import State
 from lattice.stiffness import hrennikoff
 
 GRID = Grid(6, 5, 3.0)
@@ -104,6 +107,8 @@ def test_a_pulled_strip_breaks_at_its_tensile_strength():
         share = np.full(GRID.ny, GRID.d)
         share[[0, -1]] *= 0.5
         F[GRID.edge_nodes("x+"), 0], F[GRID.edge_nodes("x-"), 0] = stress * ice.h * share, -stress * ice.h * share
-        failed.append(len(sheet.advance(0.0, F, NOTHING_Q.copy(), NoContact(), lambda nodes: None).failed))
+        failed.append(
+            len(sheet.advance(0.0, [NodeLoad("pull", F, NOTHING_Q.copy())], NoContact(), lambda nodes: None).failed)
+        )
     assert failed[0] == 0
     assert failed[1] > 0

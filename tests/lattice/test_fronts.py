@@ -6,9 +6,10 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
 from lattice.assembly import assemble, in_plane_springs, out_of_plane_springs
-from lattice.fronts import Factors, cut
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.implicit.dissection import cut
+from lattice.implicit.factors import Factors
 from lattice.stiffness import hrennikoff
 
 ICE = Ice(E=8.7e9, nu=0.3, h=3.0, rho_i=846.0, rho_w=1006.0)

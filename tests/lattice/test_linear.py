@@ -6,7 +6,7 @@ import pytest
 from lattice.assembly import in_plane_springs, out_of_plane_springs
 from lattice.grid import Grid
 from lattice.ice import Ice
-from lattice.linear import MAX_RANK, CrackedSystem
+from lattice.implicit.linear import MAX_RANK, CrackedSystem
 from lattice.stiffness import hrennikoff
 
 GRID = Grid(9, 8, 2.0)

@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
-from lattice.engine import NoContact
+from lattice.contact import NoContact
+from lattice.criteria.judge import Judge
+from lattice.criteria.table import Criterion
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
 
@@ -42,8 +45,7 @@ def pressed_down(seconds, *, dt=0.05, long_step=1, alpha=0.0, rate=0.006):
         contact.nodes = np.setdiff1d(contact.nodes, nodes)
 
     for k in range(round(seconds / dt)):
-        zero = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
-        outcomes.append(sheet.advance(k * dt, *zero, contact, release))
+        outcomes.append(sheet.advance(k * dt, [], contact, release))
     return sheet, outcomes
 
 
@@ -81,7 +83,7 @@ def test_a_rotating_floe_does_not_fail_by_rotating():
     turn = 0.05
     x = GRID.xy - GRID.xy.mean(axis=0)
     sheet.state.u[:] = np.column_stack((-turn * x[:, 1], turn * x[:, 0]))
-    out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
+    out = sheet.advance(0.0, [], NoContact(), lambda n: None)
     assert not out.failed
     assert sheet.utilisation.max() < 1e-3
 
@@ -95,19 +97,19 @@ def test_a_hanging_piece_that_has_turned_too_far_leaves():
     corners = piece.ravel()[GRID.cell_nodes]
     for cell in np.flatnonzero(corners.any(axis=1) & ~corners.all(axis=1)):
         if not (GRID.cell_nodes[cell] // GRID.ny == hinge).any() or GRID.cell_nodes[cell][0] % GRID.ny not in (5, 6):
-            sheet._fail(int(cell))
+            sheet.fail([int(cell)], [""], sheet.state, Outcome())
     sheet.state.q[piece.ravel(), 1] = 0.09
     left = []
-    zero = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
-    sheet._limits = lambda: np.full(GRID.cells, np.inf)  # strength is not what ends it
-    sheet.advance(0.05, *zero, NoContact(), left.append)
+    sheet.judge = Judge(GRID, ICE, (Criterion("never", lambda state, ice: np.zeros(GRID.cells)),))
+    sheet.advance(0.05, [], NoContact(), left.append)
     assert not left
     sheet.state.q[piece.ravel(), 1] = 0.11
     mass = sheet.present.sum()
-    sheet.advance(0.10, *zero, NoContact(), left.append)
+    out = sheet.advance(0.10, [], NoContact(), left.append)
     assert [sorted(p) for p in left] == [np.flatnonzero(piece.ravel()).tolist()]
     assert sheet.present.sum() == mass - piece.sum()
     assert sheet.energy.handed_over > 0.0
+    assert set(out.causes) == {TURNED_TOO_FAR}
 
 
 @pytest.mark.parametrize("held", [False, True])
@@ -117,7 +119,7 @@ def test_a_part_that_has_turned_as_a_whole_leaves_without_a_failure(held):
     at[GRID.edge_nodes("x-")] = held
     sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=at)
     sheet.state.q[:] = np.column_stack((-0.2 * (GRID.xy[:, 0] - 12.0), np.full(GRID.nodes, 0.2), np.zeros(GRID.nodes)))
-    out = sheet.advance(0.0, np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3)), NoContact(), lambda n: None)
+    out = sheet.advance(0.0, [], NoContact(), lambda n: None)
     assert not out.failed
     assert [len(p) for p in out.pieces] == [GRID.nodes]
     assert not sheet.present.any()

@@ -10,9 +10,9 @@ import pytest
 import scipy.sparse as sp
 
 from lattice.assembly import assemble, in_plane_mass, in_plane_springs, out_of_plane_mass, out_of_plane_springs
+from lattice.criteria.table import CRITERIA
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
-from lattice.limits import CRITERIA, Strength
 from lattice.statics import SUPPORTS, all_around, held_in_plane, held_out_of_plane, out_of_plane_stiffness
 from lattice.stepper import Stepper, critical_step
 from lattice.stiffness import STIFFNESS_SETS
@@ -34,10 +34,12 @@ def ice(nu: float = 1.0 / 3.0) -> Ice:
         sigma_f=0.7e6,
         sigma_c=3e6,
         beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8),
+        sigma_spall=-20e6,
+        sigma_f_upward=0.6e6,
+        sigma_f_downward=0.8e6,
+        sigma_shear=0.7e6,
+        K_IC=2e5,
     )
-
-
-STRENGTH = Strength(ice(), sigma_spall=-20e6, sigma_f_upward=0.6e6, sigma_f_downward=0.8e6, sigma_shear=0.7e6, K_IC=2e5)
 
 
 def rough(n: int) -> np.ndarray:
@@ -128,7 +130,7 @@ def test_failure_keeps_momentum_and_adds_no_energy(criterion: str) -> None:
     stepper.start(rough(len(mass)), 10.0 * rough(len(mass)), none)
     stepper.run(50, lambda t: none)
     u = 1e-4 * np.random.default_rng(9).standard_normal((GRID.nodes, 2))
-    load = CRITERIA[criterion](CellState.of(GRID, u, stepper.q.reshape(-1, 3)), STRENGTH)
+    load = CRITERIA[criterion].judge(CellState.of(GRID, u, stepper.q.reshape(-1, 3)), ice())
     momentum, velocity, energy = momenta(mass, stepper.v, False), stepper.velocity(none), stepper.energy(none)
     intact = np.arange(GRID.cells) != np.argmax(load)
     stepper.exchange(assemble(GRID, rows, intact), 0.0 * K)

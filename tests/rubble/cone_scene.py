@@ -2,9 +2,12 @@
 
 import numpy as np
 
+from rubble.block import Slab
+from rubble.cut import revolved
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.sheet import SheetMotion
 
 WIDTH, H = 2.8, 3.0
 PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H)
@@ -15,7 +18,7 @@ def cone_cut(y):
     z = np.concatenate([[-20.0], np.linspace(-10.0, 5.0, 61)])
     square = np.maximum(15 + z, 5.0) ** 2 - y**2
     keep = square > 0
-    return convex_parts(np.column_stack([-np.sqrt(square[keep]), z[keep]]))
+    return revolved(convex_parts(np.column_stack([-np.sqrt(square[keep]), z[keep]])))
 
 
 def rectangle(x0, z0, x1, z1):
@@ -26,19 +29,15 @@ def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
     ends = np.array([x, x + length])
     return layer.add_block(
         key,
-        rectangle(x, z - H, x + length, z),
-        ends,
-        np.array([WIDTH]),
-        846.0,
+        Slab(rectangle(x, z - H, x + length, z), ends, np.array([WIDTH]), 846.0),
         velocity,
-        0.0,
-        layer.centre(key) if y is None else y,
-        7,
+        y=layer.centre(key) if y is None else y,
+        fragment=7,
     )
 
 
 def filled(threads=1, **kwargs):
-    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, revolved=True, threads=threads, **kwargs)
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, threads=threads, **kwargs)
     for key in (2, -1, 0, -2, 1):
         for i in range(8):
             add(layer, key, -17.5 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4))
@@ -49,7 +48,9 @@ def drive(layer, windows):
     for w in range(windows):
         for key in list(layer.sections):
             x = np.arange(-16.0, -50.0, -2.8) + 0.025 * w
-            layer.set_sheet(key, x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H, (1e9, 1e9), (1e8, 1e8))
+            layer.set_sheet(
+                key, SheetMotion(x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H, (1e9, 1e9), (1e8, 1e8))
+            )
         layer.advance(10)
     return layer
 

@@ -3,6 +3,9 @@
 import numpy as np
 import pytest
 
+from rubble.block import Slab
+from rubble.cut import plane
+from rubble.energy import mechanical_energy
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 
@@ -16,10 +19,10 @@ def held(backfill, depth, seconds, **physics):
     layer = RubbleLayer(
         RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill=backfill, filling_time=TIME, **physics),
         WIDTH,
-        solids=lambda y: [lid],
+        solids=lambda y: plane([lid]),
     )
     outline = np.array([(-5.0, -depth - H), (5.0, -depth - H), (5.0, -depth), (-5.0, -depth)])
-    layer.add_block(0, outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.0, 0.0, 0)
+    layer.add_block(0, Slab(outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I))
     for _ in range(round(seconds / 0.05)):
         layer.advance(10)
     return float(layer.load_on_structure[0, 2]), layer
@@ -48,7 +51,7 @@ def test_a_top_fills_in_its_time(seconds):
 def test_a_top_out_of_the_water_drains():
     layer = RubbleLayer(RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, backfill="filling"), WIDTH)
     outline = np.array([(-5.0, -2.5), (5.0, -2.5), (5.0, 0.5), (-5.0, 0.5)])
-    layer.add_block(0, outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.0, 0.0, 0, flooded=True)
+    layer.add_block(0, Slab(outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I), flooded=True)
     layer.advance(10)
     assert layer.block(0).flooded == 0.0
 
@@ -58,16 +61,7 @@ def test_old_rubble_is_flooded_and_new_pieces_are_dry():
     outline = np.array([(-5.0, -5.0), (5.0, -5.0), (5.0, -2.0), (-5.0, -2.0)])
     for i, flooded in enumerate((None, True)):
         layer.add_block(
-            0,
-            outline - [0.0, 20.0 * i],
-            np.array([-5.0, 5.0]),
-            np.array([WIDTH]),
-            RHO_I,
-            (0.0, 0.0),
-            0.0,
-            0.0,
-            0,
-            flooded=flooded,
+            0, Slab(outline - [0.0, 20.0 * i], np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I), flooded=flooded
         )
     assert [b.flooded for b in layer.blocks] == [0.0, 1.0]
 
@@ -81,10 +75,10 @@ def books(sign=1.0):
         WIDTH,
     )
     outline = np.array([(-5.0, -4.5), (5.0, -4.5), (5.0, -1.5), (-5.0, -1.5)])
-    layer.add_block(0, outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I, (0.0, 0.0), 0.02, 0.0, 0)
-    start = layer.energy
+    layer.add_block(0, Slab(outline, np.array([-5.0, 5.0]), np.array([WIDTH]), RHO_I), (0.0, 0.0), 0.02)
+    start = mechanical_energy(layer)
     layer.advance(2000)
-    end = layer.energy
+    end = mechanical_energy(layer)
     return start["kinetic"] + start["potential"], end["kinetic"] + end["potential"] - sign * end["dry"], end["dry"]
 
 

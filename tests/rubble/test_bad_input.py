@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 
@@ -12,7 +14,7 @@ WALL = np.array([(0.0, -30.0), (10.0, -30.0), (10.0, 30.0), (0.0, 30.0)])
 
 def add(layer, x, z, width=1.0):
     outline = np.array([(x, z), (x + 4.0, z), (x + 4.0, z + 2.0), (x, z + 2.0)])
-    return layer.add_block(0, outline, np.array([x, x + 4.0]), np.array([width]), 900.0, (0.0, 0.0), 0.0, 0.0, 0)
+    return layer.add_block(0, Slab(outline, np.array([x, x + 4.0]), np.array([width]), 900.0))
 
 
 def twice(layer):
@@ -32,13 +34,13 @@ def twice(layer):
 )
 def test_one_clear_line(do, words):
     with pytest.raises(ValueError, match=words) as error:
-        do(RubbleLayer(RubblePhysics(thickness=2.0), 1.0, solids=lambda y: [WALL]))
+        do(RubbleLayer(RubblePhysics(thickness=2.0), 1.0, solids=lambda y: plane([WALL])))
     assert "\n" not in str(error.value)
     assert len(str(error.value)) < 200
 
 
 def test_the_block_that_was_refused_leaves_nothing_behind():
-    layer = RubbleLayer(RubblePhysics(thickness=2.0), 1.0, solids=lambda y: [WALL])
+    layer = RubbleLayer(RubblePhysics(thickness=2.0), 1.0, solids=lambda y: plane([WALL]))
     with pytest.raises(ValueError, match="overlaps"):
         twice(layer)
     assert len(layer.blocks) == 1

@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
-from rubble.layer import Domain, RubbleLayer
+from rubble.block import Slab
+from rubble.cut import revolved
+from rubble.domain import Domain
+from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 from rubble.rig import thrust
@@ -20,9 +23,8 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
     layer = RubbleLayer(
         physics,
         WIDTH,
-        revolved=True,
         domain=Domain(x_max=14.0, depth=60.0, y_max=30.0),
-        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+        solids=lambda y: revolved(convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3))),
     )
     random, draft, fed, rows = np.random.default_rng(1), H * 846 / rho_w, [], []
     for window in range(round(seconds / 0.05)):
@@ -31,12 +33,12 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
                 x, y = -32.0 + random.uniform(-1, 1), layer.centre(key) + random.uniform(-1.5, 1.5)
                 outline = np.array([(x - 2, -draft), (x + 2, -draft), (x + 2, H - draft), (x - 2, H - draft)])
                 number = layer.add_block(
-                    key, outline, np.array([x - 2, x + 2]), np.array([WIDTH]), 846.0, (0.3, 0.0), 0.0, y, 0
+                    key, Slab(outline, np.array([x - 2, x + 2]), np.array([WIDTH]), 846.0), (0.3, 0.0), y=y
                 )
                 thrust(layer, number, push)
                 fed.append(layer.block(number).mass)
         layer.advance(WINDOW)
-        rows.append((layer.mass, layer.cleared_mass, layer.load_on_structure[:, 0].sum() if layer.blocks else 0.0))
+        rows.append((layer.mass, layer.gone.mass, layer.load_on_structure[:, 0].sum() if layer.blocks else 0.0))
     return layer, np.array(fed), np.array(rows)
 
 
@@ -45,7 +47,7 @@ def check_steady(layer, fed, rows, tolerance):
     rate = (rows[-1, 1] - rows[half, 1]) / (fed.sum() / 2)
     assert rate == pytest.approx(1.0, abs=tolerance)  # what arrives leaves
     assert rows[half:, 0].max() < 2.0 * rows[:half, 0].max()  # nothing gathers
-    assert layer.mass + layer.cleared_mass + layer.crushed_mass == pytest.approx(fed.sum(), rel=1e-12)
+    assert layer.mass + layer.gone.mass + layer.crushed.mass == pytest.approx(fed.sum(), rel=1e-12)
     assert rows[half:, 2].mean() > 5e4
     return {int(i) for i in layer.cleared}
 
@@ -67,13 +69,12 @@ def test_a_block_passes_under_the_toe():
     layer = RubbleLayer(
         RubblePhysics(rho_i=1006.0, rho_w=1006.0, thickness=H, form_drag=0.0, skin_drag=0.0),
         WIDTH,
-        revolved=True,
         domain=Domain(x_max=14.0),
-        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+        solids=lambda y: revolved(convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3))),
     )
     for z in (-7.0, -9.1):
         outline = np.array([(-12, z - 1), (-8, z - 1), (-8, z + 1), (-12, z + 1)], dtype=float)
-        layer.add_block(0, outline, np.array([-12.0, -8.0]), np.array([WIDTH]), 1006.0, (0.5, 0.0), 0.0, 0.0, 0)
+        layer.add_block(0, Slab(outline, np.array([-12.0, -8.0]), np.array([WIDTH]), 1006.0), (0.5, 0.0))
     for _ in range(1200):
         layer.advance(10)
     assert layer.cleared == [1]
@@ -96,12 +97,11 @@ def pressed_aside(feed_speed):
     layer = RubbleLayer(
         physics,
         WIDTH,
-        revolved=True,
-        solids=lambda y: convex_parts(shape.section_outline(y, shape.bottom, shape.top, 1e-3)),
+        solids=lambda y: revolved(convex_parts(*shape.section(y, shape.bottom, shape.top, 1e-3))),
     )
     draft = H * 846 / 1006
     outline = np.array([(-14.0, -draft), (-10.0, -draft), (-10.0, H - draft), (-14.0, H - draft)])
-    number = layer.add_block(1, outline, np.array([-14.0, -10.0]), np.array([WIDTH]), 846.0, (0.1, 0.0), 0.0, 5.0, 0)
+    number = layer.add_block(1, Slab(outline, np.array([-14.0, -10.0]), np.array([WIDTH]), 846.0), (0.1, 0.0), y=5.0)
     thrust(layer, number, 2e5)
     fastest = 0.0
     while layer.time < 10.0 and layer.blocks:

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
+from rubble.arrays import rows
+from rubble.block import Slab
+from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.sheet import SheetMotion
 
 WIDTH, H = 2.8, 3.0
 ICE = dict(rho_i=846.0, rho_w=1006.0, thickness=H)
@@ -22,7 +26,7 @@ def turned(polygon, angle, about=(0.0, 0.0)):
 
 def add(layer, polygon, density=846.0, velocity=(0.0, 0.0), key=0, omega=0.0):
     ends = np.array([polygon[:, 0].min(), polygon[:, 0].max()])
-    return layer.add_block(key, polygon, ends, np.array([WIDTH]), density, velocity, omega, layer.centre(key), 0)
+    return layer.add_block(key, Slab(polygon, ends, np.array([WIDTH]), density), velocity, omega)
 
 
 def flat_sheet(
@@ -40,30 +44,25 @@ def flat_sheet(
     x = np.array(x, dtype=float)
     layer.set_sheet(
         key,
-        x,
-        np.broadcast_to(z, x.shape),
-        x[0] + ahead,
-        np.tile(velocity, (len(x), 1)),
-        h,
-        stiffness,
-        inertia,
-        applied,
+        SheetMotion(
+            x, np.broadcast_to(z, x.shape), x[0] + ahead, np.tile(velocity, (len(x), 1)), h, stiffness, inertia, applied
+        ),
     )
 
 
 def slope_45(y):
     """Face x = -z from 30 m below to 5 m above water: a downward-breaking slope."""
-    return convex_parts(np.array([(30.0, -30.0), (-5.0, 5.0)]), back=60.0)
+    return plane(convex_parts(np.array([(30.0, -30.0), (-5.0, 5.0)]), back=60.0))
 
 
 def ramp_45(y):
     """Face x = z, up in the air: an upward slope on which blocks lie by their weight."""
-    return convex_parts(np.array([(10.0, 10.0), (60.0, 60.0)]), back=80.0)
+    return plane(convex_parts(np.array([(10.0, 10.0), (60.0, 60.0)]), back=80.0))
 
 
 def lid(y):
     """An upturned bin: blocks float up into it."""
-    return [rectangle(-12, -10, 12, -8), rectangle(-12, -40, -10, -10), rectangle(10, -40, 12, -10)]
+    return plane([rectangle(-12, -10, 12, -8), rectangle(-12, -40, -10, -10), rectangle(10, -40, 12, -10)])
 
 
 @pytest.mark.parametrize(("mu", "holds"), [(1.002, True), (0.998, False)])
@@ -76,7 +75,7 @@ def test_friction_threshold_on_45_degrees(pair, mu, holds):
     else:
         layer = RubbleLayer(RubblePhysics(**ICE, mu_ice_ice=mu, mu_structure=0.1), WIDTH)
         x = np.arange(48.0, 0.0, -3.0)
-        layer.set_sheet(0, x, x.copy(), 49.0, np.zeros((len(x), 2)), H, (1e11, 1e11), (3e6, 3e6))
+        layer.set_sheet(0, SheetMotion(x, x.copy(), 49.0, np.zeros((len(x), 2)), H, (1e11, 1e11), (3e6, 3e6)))
         corner = np.array([20.0, 20.0 + H / 2])
     block = turned(rectangle(0, 0, 4, 1), np.pi / 4) + corner
     add(layer, block)
@@ -138,11 +137,11 @@ def test_an_eccentric_thrust_keeps_its_moment_on_the_nodes():
     flat_sheet(layer, z=(20.0, 20.2, 20.5, 20.8))
     add(layer, rectangle(2.0, 17.0, 5.0, 18.9), velocity=(-3.0, 0.4))
     layer.advance(200)
-    force, sheet = layer.sheet_forces(0), layer.section(0).sheet_sums
+    force, sheet = layer.sheet_forces(0), layer.section(0).sums.sheet[0]
     nodes, z = np.array([0.0, -3.0, -6.0, -9.0]), np.array([20.0, 20.2, 20.5, 20.8])
     assert abs(force[:, 0].sum()) > 1.0
-    assert force.sum(axis=0) == pytest.approx(sheet[5:7], rel=1e-12)
-    assert nodes @ force[:, 1] - z @ force[:, 0] == pytest.approx(sheet[7], rel=1e-10)
+    assert force.sum(axis=0) == pytest.approx([sheet["x"], sheet["z"]], rel=1e-12)
+    assert nodes @ force[:, 1] - z @ force[:, 0] == pytest.approx(sheet["moment"], rel=1e-10)
 
 
 def jam(k, travel, *, windows=60, applied=True):
@@ -150,7 +149,7 @@ def jam(k, travel, *, windows=60, applied=True):
 
     Returns the forces on wall and sheet. Without ``applied`` the rubble is not told of the force behind the yield.
     """
-    layer = RubbleLayer(RubblePhysics(**ICE), WIDTH, solids=lambda y: [rectangle(10, -30, 20, 30)])
+    layer = RubbleLayer(RubblePhysics(**ICE), WIDTH, solids=lambda y: plane([rectangle(10, -30, 20, 30)]))
     draft = H * 846 / 1006
     add(layer, rectangle(4.0, -draft, 10.0, H - draft))
     gap, force = 0.02, 0.0
@@ -161,14 +160,16 @@ def jam(k, travel, *, windows=60, applied=True):
         v = (gap + travel) / 20 / 0.05 if i + 1 < 20 else 0.0
         layer.set_sheet(
             0,
-            x + shift - 1.5,
-            np.full(3, H / 2 - draft),
-            shift,
-            np.tile((v, 0.0), (3, 1)),
-            H,
-            (k, 1e7),
-            (5e4, 5e5),
-            (force if applied else 0.0, 0.0),
+            SheetMotion(
+                x + shift - 1.5,
+                np.full(3, H / 2 - draft),
+                shift,
+                np.tile((v, 0.0), (3, 1)),
+                H,
+                (k, 1e7),
+                (5e4, 5e5),
+                (force if applied else 0.0, 0.0),
+            ),
         )
         layer.advance(10)
         force = float(layer.sheet_forces(0)[:, 0].sum())
@@ -221,12 +222,14 @@ def impulse_balance(sign):
     section, error, change, pressed = layer.section(0), 0.0, 0.0, 0.0
     for w in range(40):
         flat_sheet(layer, x=np.array([0.0, -3.0, -6.0, -9.0]) + 0.02 * w, velocity=(0.4, 0.0), stiffness=(1e9, 3e7))
-        water, p = section.losses[1:3].copy(), moving(section)
+        water, p = rows(section.sums.water, "impulse_x", 2)[0].copy(), moving(section)
         layer.advance(10)
-        got = section.losses[1:3] - water - sign * section.sums[:, :2].sum(axis=0) - section.sheet_sums[5:7]
+        sums = section.sums
+        on_structure, on_sheet = rows(sums.block, "structure_x", 2), rows(sums.sheet, "x", 2)[0]
+        got = rows(sums.water, "impulse_x", 2)[0] - water - sign * on_structure.sum(axis=0) - on_sheet
         error = max(error, np.abs(moving(section) - p - got).max())
-        change = max(change, np.abs(section.sums[:, 0]).max())
-        pressed = max(pressed, np.abs(section.sheet_sums[5:7]).max())
+        change = max(change, np.abs(on_structure[:, 0]).max())
+        pressed = max(pressed, np.abs(on_sheet).max())
     return error / change, change, pressed
 
 

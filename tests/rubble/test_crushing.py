@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from rubble.block import Slab
 from rubble.crushing import depth_for
+from rubble.cut import plane
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
@@ -16,20 +18,11 @@ WALL = np.array([(0.0, -50.0), (10.0, -50.0), (10.0, 50.0), (0.0, 50.0)])
 def pressed(strength=STRENGTH, angle=np.pi / 4, windows=100, force=FORCE):
     """A block that is pressed on a wall with its corner, without weight or water."""
     physics = RubblePhysics(rho_i=900.0, rho_w=1e-9, g=0.0, thickness=H, contact_strength=strength)
-    layer = RubbleLayer(physics, WIDTH, solids=lambda y: [WALL])
+    layer = RubbleLayer(physics, WIDTH, solids=lambda y: plane([WALL]))
     box = place(np.array([(-3.0, -1.5), (3.0, -1.5), (3.0, 1.5), (-3.0, 1.5)]), 0.0, 0.0, angle, 0.0, 0.0)
     x = -float(box[:, 0].max())
     layer.add_block(
-        0,
-        box + np.array([x, 0.0]),
-        x * np.cos(angle) + np.array([-3.0, 3.0]),
-        np.array([WIDTH]),
-        900.0,
-        (0.0, 0.0),
-        0.0,
-        0.0,
-        0,
-        angle,
+        0, Slab(box + np.array([x, 0.0]), x * np.cos(angle) + np.array([-3.0, 3.0]), np.array([WIDTH]), 900.0, angle)
     )
     lock_rotation(layer, 0)
     layer.block(0).body.mass = 1e5
@@ -52,24 +45,24 @@ def test_a_corner_crushes_until_its_area_carries_the_force():
     chord = face_on_wall(layer)
     assert chord == pytest.approx(FORCE / STRENGTH / WIDTH, rel=0.1)
     assert FORCE / (chord * WIDTH) <= 1.05 * STRENGTH
-    assert layer.crushed_mass == pytest.approx(chord**2 / 4 * WIDTH * 900.0, rel=0.02)  # the corner, 90 degrees
-    assert layer.mass + layer.crushed_mass == pytest.approx(before, rel=1e-12)
+    assert layer.crushed.mass == pytest.approx(chord**2 / 4 * WIDTH * 900.0, rel=0.02)  # the corner, 90 degrees
+    assert layer.mass + layer.crushed.mass == pytest.approx(before, rel=1e-12)
     assert layer.load_on_structure[0, 0] == pytest.approx(FORCE, rel=0.02)
 
 
 def test_without_a_limit_nothing_crushes():
     layer = pressed(float("inf"))
-    assert layer.crushed_mass == 0.0
+    assert layer.crushed.mass == 0.0
     assert face_on_wall(layer) == 0.0
 
 
 def test_a_face_that_is_large_enough_does_not_crush():
-    assert pressed(angle=0.0).crushed_mass == 0.0
+    assert pressed(angle=0.0).crushed.mass == 0.0
 
 
 def test_a_whole_face_recedes_when_it_is_too_small():
     layer = pressed(angle=0.0, force=4.0 * STRENGTH * H * WIDTH, windows=20)
-    assert layer.crushed_mass > 0.0
+    assert layer.crushed.mass > 0.0
     assert layer.mass > 0.0
 
 
@@ -77,9 +70,9 @@ def test_crushed_ice_takes_its_momentum_along():
     layer = pressed(windows=0)
     layer.block(0).body.velocity, layer.block(0).v_y = (0.3, 1.0), 0.5
     layer.advance(10)
-    lost = layer.crushed_mass
+    lost = layer.crushed.mass
     assert lost > 0.1
-    assert layer.crushed_momentum == pytest.approx(lost * np.array([*layer.table().velocity[0]]), rel=1e-9, abs=1e-6)
+    assert layer.crushed.momentum == pytest.approx(lost * np.array([*layer.table().velocity[0]]), rel=1e-9, abs=1e-6)
 
 
 def test_how_deep_a_corner_and_a_face_are_cut():

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
+from rubble.cut import revolved
+from rubble.domain import Domain
 from rubble.initial import CALM, settle
-from rubble.layer import Domain, RubbleLayer
+from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.sheet import SheetMotion
 
 H, PITCH, RHO_I, RHO_W = 3.0, 5.6, 846.0, 1006.0
 SHAPE = cone(np.radians(45), 15.0, 9.0, top=5.0, toe_depth=20.0)
@@ -21,17 +24,19 @@ def pile(volume, sections, seed=2018, mu=0.1, threads=1):
     layer = RubbleLayer(
         physics,
         PITCH,
-        revolved=True,
         domain=Domain(x_max=21.0, depth=60.0, y_max=90.0),
         threads=threads,
-        solids=lambda y: convex_parts(SHAPE.section_outline(y, -20.0, 5.0, 1e-3)),
+        solids=lambda y: revolved(convex_parts(*SHAPE.section(y, -20.0, 5.0, 1e-3))),
     )
     fronts = {}
     for key in sections:
         face = float(SHAPE.face_x(layer.centre(key), UNDER))
         x = np.arange(face - 0.5, face - 60.0, -2.8)
         layer.set_sheet(
-            key, x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H, (1e9, 1e9), (5e4, 5e4)
+            key,
+            SheetMotion(
+                x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H, (1e9, 1e9), (5e4, 5e4)
+            ),
         )
         fronts[key] = (face, UNDER)
     return layer, settle(layer, fronts, volume, seed)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rubble.layer import RubbleLayer
+from rubble.sheet import SheetMotion
 from rubble.snapshot import checkpoint, restore, save
 
 
@@ -30,12 +31,12 @@ def test_a_copy_with_two_threads_has_the_same_bits(scene):
 
 def test_loading_disturbs_nothing(scene):
     """Contacts keep their history: a settled pile goes on as if nothing had happened."""
-    layer = RubbleLayer(scene.PHYSICS, scene.WIDTH, solids=scene.cone_cut, revolved=True)
+    layer = RubbleLayer(scene.PHYSICS, scene.WIDTH, solids=scene.cone_cut)
     x = np.arange(-10.0, -50.0, -2.8)
     for i in range(8):
         scene.add(layer, 0, -20.0 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4), velocity=(0.0, 0.0))
     for _ in range(400):
-        layer.set_sheet(0, x, 0 * x, x[0] + 1.4, np.zeros((len(x), 2)), 3.0, (1e9, 1e9), (1e9, 1e9))
+        layer.set_sheet(0, SheetMotion(x, 0 * x, x[0] + 1.4, np.zeros((len(x), 2)), 3.0, (1e9, 1e9), (1e9, 1e9)))
         layer.advance(10)
     layer.advance(200)  # no hand-over of the sheet between the windows that are compared
     layer.advance(10)

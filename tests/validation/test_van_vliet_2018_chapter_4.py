@@ -9,9 +9,9 @@ import pytest
 
 from cosim.verify.case import CaseResult
 from cosim.verify.cases import run
+from lattice.criteria.laws import bending_top, tension
 from lattice.edge_crack import normalised_load
 from lattice.ice import Ice
-from lattice.limits import Strength, bending_top, tension
 from lattice.specimens import EdgeCrack, cantilever, factor_f
 from lattice.stiffness import hrennikoff
 from lattice.unit_cell import cell_in_bending, cell_in_stress
@@ -38,7 +38,7 @@ def test_an_envelope_that_depends_on_the_orientation_is_seen() -> None:
     for load, criterion in ((cell_in_stress, tension), (cell_in_bending, bending_top)):
         spread = {}
         for name, springs in (("full", full), ("wrong", wrong)):
-            use = [criterion(load(ice, springs, np.array([6e5, 0.0]), a), Strength(ice))[0] for a in (0.0, 0.785)]
+            use = [criterion(load(ice, springs, np.array([6e5, 0.0]), a), ice)[0] for a in (0.0, 0.785)]
             spread[name] = abs(use[1] / use[0] - 1.0)
         assert spread["full"] < 1e-10
         assert spread["wrong"] > 1e-2

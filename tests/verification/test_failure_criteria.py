@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lattice.criteria import combined_utilisation
+from lattice.criteria.mohr import circle, circle_of_connections
+from lattice.criteria.table import CRITERIA
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
-from lattice.limits import CRITERIA, Strength
 from lattice.stiffness import hrennikoff
-from lattice.strain import CellState, circle, circle_of_connections
+from lattice.strain import CellState
 from lattice.unit_cell import cell_in_bending, cell_in_stress
 
 ICE = Ice(
@@ -25,13 +25,17 @@ ICE = Ice(
     sigma_f=0.9e6,
     sigma_c=5e6,
     beam_test=BeamTest(length=9.0, width=3.0, failure_load=0.2e6, factor=0.8),
+    sigma_spall=-28e6,
+    sigma_f_upward=0.7e6,
+    sigma_f_downward=1.1e6,
+    sigma_shear=0.7e6,
+    K_IC=2e5,
 )
-STRENGTH = Strength(ICE, sigma_spall=-28e6, sigma_f_upward=0.7e6, sigma_f_downward=1.1e6, sigma_shear=0.7e6, K_IC=2e5)
 SPRINGS = hrennikoff(ICE)
 
 
 def use(criterion: str, state: CellState) -> float:
-    return float(CRITERIA[criterion](state, STRENGTH)[0])
+    return float(CRITERIA[criterion].judge(state, ICE)[0])
 
 
 def stress(xx: float, yy: float, alpha: float = 0.4) -> CellState:
@@ -59,6 +63,10 @@ def bending(xx: float, yy: float = 0.0, alpha: float = 0.4) -> CellState:
         ("combined-tension", bending(-0.9e6), 1.0),
         ("combined-tension", stress(0.6e6, 0.0), 1.0),
         ("combined-compression", stress(-5e6, 0.0), 1.0),
+        ("principal-stress", stress(0.6e6, 0.0), 1.0),
+        ("principal-stress", stress(0.6e6, -5e6), 1.0),
+        ("principal-stress", bending(0.9e6, 0.5e6), 1.0),
+        ("principal-stress", bending(-0.9e6), 1.0),
     ],
 )
 def test_a_uniaxial_or_equal_load_fails_at_its_strength(criterion: str, state: CellState, expected: float) -> None:
@@ -76,22 +84,14 @@ def test_confinement_helps_against_shear_faulting_and_not_against_spalling() -> 
     assert use("spalling", stress(-5e6, -1e6)) > use("spalling", stress(-5e6, 0.0))
 
 
-def test_combined_tension_is_the_criterion_of_the_engine() -> None:
-    """Same circle as `lattice.criteria`, which the engine evaluates in compiled form."""
-    rng = np.random.default_rng(4)
-    grid = Grid(4, 4, 2.0)
-    state = CellState.of(grid, 1e-4 * rng.standard_normal((16, 2)), 1e-4 * rng.standard_normal((16, 3)))
-    strains = np.hstack((state.membrane.tensor(), state.bending.tensor()))
-    assert CRITERIA["combined-tension"](state, STRENGTH) == pytest.approx(
-        combined_utilisation(strains, ICE.sigma_t, ICE), rel=1e-12
-    )
-
-
 def test_averages_over_connections_are_the_circle_in_a_uniform_state() -> None:
     for state in (stress(1e6, -2e6, 0.7), bending(1e6, 0.3e6, 1.1)):
-        for part in (state.membrane, state.bending):
-            for ours, uniform in zip(circle_of_connections(part), circle(part.tensor()), strict=True):
-                assert ours == pytest.approx(uniform, rel=1e-9, abs=1e-18)
+        for part, uniform in (
+            (state.membrane, circle(state.strains)),
+            (state.bending, circle(state.strains.bending_only(), 1.0)),
+        ):
+            for ours, mean in zip(circle_of_connections(part), uniform, strict=True):
+                assert ours == pytest.approx(mean, rel=1e-9, abs=1e-18)
 
 
 def test_the_crack_tip_limits_scale_with_the_cell() -> None:

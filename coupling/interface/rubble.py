@@ -1,0 +1,143 @@
+"""The rubble as a participant: what it takes, what it gives, and what it promises."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from coupling.interface.exchange import ForcePairs, Restore, SheetForces
+from coupling.interface.sheet import Fragment, SheetEdge
+from coupling.interface.units import Array, IntArray
+
+
+@dataclass(frozen=True, slots=True)
+class BlockTable:
+    """All blocks of the rubble at one instant, as arrays (struct of arrays, n blocks)."""
+
+    id: IntArray  #: (n,) number of the block, never reused
+    section: IntArray  #: (n,) section it moves in
+    phase: IntArray  #: (n,) `Phase` of the block: ROTATING or SLIDING
+    mass: Array  #: (n,) [kg]
+    width: Array  #: (n,) mean extent along y [m]
+    position: Array  #: (n, 3) centre of mass [m]
+    angle: Array  #: (n,) rotation about -y, counter-clockwise in the x-z picture [rad]
+    velocity: Array  #: (n, 3) [m/s]
+    omega: Array  #: (n,) rate of `angle` [rad/s]
+    load: Array  #: (n, 3) mean force on the structure over the window [N]
+    outline: Array  #: (v, 2) corner points of all blocks in the x-z plane, in world coordinates [m]
+    offset: IntArray  #: (n + 1,) block i owns outline[offset[i]:offset[i + 1]]
+
+    @property
+    def count(self) -> int:
+        """Number of blocks."""
+        return len(self.id)
+
+    @classmethod
+    def empty(cls) -> BlockTable:
+        """No blocks."""
+        i, f = np.empty(0, np.int64), np.empty(0)
+        return cls(
+            i,
+            i,
+            i,
+            f,
+            f,
+            np.empty((0, 3)),
+            f,
+            np.empty((0, 3)),
+            f,
+            np.empty((0, 3)),
+            np.empty((0, 2)),
+            np.zeros(1, np.int64),
+        )
+
+
+@dataclass(frozen=True)
+class HandOver:
+    """Balance of one fragment: what left the lattice and what arrived as blocks.
+
+    Momentum that ice brings which is trimmed off is not lost: an error is that of the ice that has become blocks.
+    """
+
+    blocks: int
+    mass: float  #: of the fragment, without what was crushed before [kg]
+    trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
+    momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
+    angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, in the x-z plane
+    angular_momentum_change: float = 0.0  #: part of it that goes because a block has its mass in its body, not at nodes
+
+
+class RubbleParticipant(Protocol):
+    """Broken ice. `coupling.rubble_port.RubblePort` is the one of this project, `NoRubble` the one that takes it away.
+
+    Per window first `add` for each fragment of it, then `set_sheet`, then `advance`; afterwards everything else speaks
+    of the window that has just ended. Blocks move from the state that their ice had at the start of the window.
+    """
+
+    @property
+    def mass(self) -> float:
+        """True mass of all blocks that are followed [kg]."""
+        ...
+
+    @property
+    def cleared_mass(self) -> float:
+        """Mass of all blocks so far that have passed the structure or left the domain [kg]."""
+        ...
+
+    @property
+    def energy(self) -> dict[str, float]:
+        """Terms of `coupling.energy` that blocks have a part in, since the start [J]; empty: no books are kept."""
+        ...
+
+    @property
+    def momenta(self) -> dict[str, float]:
+        """Momentum that cleared and crushed ice took along, by name and axis, since the start [N s]."""
+        ...
+
+    @property
+    def budget(self) -> ForcePairs:
+        """What carries the blocks, means over the window; ``staggering`` is minus their force on the sheet."""
+        ...
+
+    @property
+    def power(self) -> float:
+        """Mean power of the blocks' forces on the edges, by the motion of the edges as the rubble saw it [W]."""
+        ...
+
+    def add(self, fragment: Fragment) -> HandOver:
+        """Turns a fragment into blocks where and as it moves. The fragment is not kept."""
+        ...
+
+    def sections_in_use(self) -> list[int]:
+        """Numbers of the sections in which the rubble must know where the sheet is, ascending."""
+        ...
+
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
+        """The sheet by section in the coming window; a section without an entry has no sheet.
+
+        ``carried`` are the forces of the rubble that the sheet already answers to in this motion: the edge yields to
+        what comes on top of them.
+        """
+        ...
+
+    def advance(self, window_ns: int) -> None:
+        """Moves all blocks over a window, a whole number of sub-steps. SimulationError if a motion is not finite."""
+        ...
+
+    def forces_on_sheet(self) -> SheetForces:
+        """Mean forces of the blocks on the sheet over the last window; new arrays in every window."""
+        ...
+
+    def load(self) -> Array:
+        """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]. The caller's."""
+        ...
+
+    def blocks(self) -> BlockTable:
+        """All blocks at the end of the window."""
+        ...
+
+    def save(self) -> Restore:
+        """The rubble between two windows; see `Restore`."""
+        ...

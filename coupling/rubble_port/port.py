@@ -1,0 +1,192 @@
+"""The rubble as a participant: blocks load the structure and the sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from coupling.interface import (
+    NS,
+    Array,
+    BlockTable,
+    ForcePairs,
+    Fragment,
+    HandOver,
+    IntArray,
+    Phase,
+    Restore,
+    SheetEdge,
+    SheetForces,
+    SimulationError,
+    Structure,
+)
+from coupling.rubble_port.hand_over import Arrivals
+from rubble import snapshot
+from rubble.cut import Bearing, Cut, faceted
+from rubble.domain import Domain
+from rubble.energy import energy_terms
+from rubble.layer import RubbleLayer
+from rubble.outline import convex_parts
+from rubble.physics import RubblePhysics
+from rubble.sheet import SheetMotion
+
+OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
+
+
+@dataclass(frozen=True)
+class Saved:
+    """The rubble at the end of a window."""
+
+    layer: bytes  #: see `rubble.snapshot`
+    edges: dict[int, SheetEdge]
+    forces: SheetForces
+    fragments: int
+    born: Array  #: (2,) energy of all blocks when they were born [J]
+
+
+class RubblePort:
+    """Sections of `rubble.layer`, fed with fragments and with the sheet's edge: a `RubbleParticipant`."""
+
+    def __init__(
+        self,
+        structure: Structure,
+        physics: RubblePhysics,
+        *,
+        pitch: float,
+        origin: float,
+        columns_per_section: int,
+        domain: Domain,
+        threads: int = 1,
+    ):
+        """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
+        bottom, top = max(structure.bottom, -domain.depth), structure.top
+
+        def solids(y: float) -> Cut:
+            def bearing(x: float, z: float) -> Bearing:
+                constant, radial = structure.bearing(x, y, z)
+                return Bearing(float(constant), float(radial))
+
+            return faceted(convex_parts(*structure.section(y, bottom, top, OUTLINE_TOLERANCE)), bearing)
+
+        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, domain=domain, threads=threads)
+        self.physics = physics
+        self.structure = structure
+        self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
+        self._edges: dict[int, SheetEdge] = {}
+        self._forces = SheetForces.none()
+        self._arrivals = Arrivals(physics, columns_per_section)
+
+    def add(self, fragment: Fragment) -> HandOver:
+        """Turns a fragment into blocks where and as it moves now."""
+        return self._arrivals.add(self.layer, fragment)
+
+    def sections_in_use(self) -> list[int]:
+        """Sections that hold blocks or are next to one: those that must know where the sheet is."""
+        return sorted({k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)})
+
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
+        """The sheet's edges for the coming window; ``carried`` are the forces that it already answers to in them."""
+        for key in set(self._edges) - set(edges):
+            self.layer.remove_sheet(key)
+        self._edges = edges
+        for key, e in edges.items():
+            applied, h = _on_edge(carried, e), self.physics.thickness
+            self.layer.set_sheet(key, SheetMotion(e.x, e.z, e.front, e.velocity, h, e.stiffness, e.inertia, applied))
+
+    def advance(self, window_ns: int) -> None:
+        """Moves all blocks over a window and sums their impulses on the sheet."""
+        crushed = self.layer.crushed.mass
+        try:
+            self.layer.advance(round(window_ns / NS / self.physics.substep))
+        except RuntimeError as error:
+            raise SimulationError(str(error)) from error
+        if self.layer.crushed.mass > crushed:
+            self.on_crushed(self.layer.crushed.mass - crushed)
+        self.take_forces()
+
+    def take_forces(self) -> None:
+        """Reads the mean forces on the sheet's nodes over the last window off the layer."""
+        nodes: list[IntArray] = [e.nodes for e in self._edges.values()]
+        if not nodes:
+            self._forces = SheetForces.none()
+            return
+        f = np.concatenate([self.layer.sheet_forces(key) for key in self._edges])
+        on = np.flatnonzero(f.any(axis=1))
+        force = np.column_stack((f[:, 0], np.zeros(len(f)), f[:, 1]))
+        self._forces = SheetForces(np.concatenate(nodes)[on], force[on])
+
+    def forces_on_sheet(self) -> SheetForces:
+        """Mean forces over the last window."""
+        return self._forces
+
+    @property
+    def power(self) -> float:
+        """Mean power of these forces on the edges as the rubble saw them move [W]."""
+        return self.layer.power_on_sheet
+
+    def save(self) -> Restore:
+        """The rubble between two windows; this run goes on from the copy as well (`rubble.snapshot`)."""
+        a = self._arrivals
+        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, a.fragments, a.born.copy())
+        restore = partial(self._restore, saved)
+        restore()
+        return restore
+
+    def _restore(self, saved: Saved) -> None:
+        """Sets the rubble back; a window from here has the same bits as the first one from here."""
+        self.layer = snapshot.restore(saved.layer, self.layer)
+        self._edges, self._forces = saved.edges, saved.forces
+        self._arrivals.fragments, self._arrivals.born = saved.fragments, saved.born.copy()
+
+    def blocks(self) -> BlockTable:
+        """All blocks at the end of the window."""
+        columns = self.layer.columns()
+        sliding = columns.pop("sliding")
+        return BlockTable(phase=np.where(sliding, Phase.SLIDING, Phase.ROTATING).astype(np.int64), **columns)
+
+    def load(self) -> Array:
+        """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
+        parts = {Phase.ROTATING: self.layer.load_of(sliding=False), Phase.SLIDING: self.layer.load_of(sliding=True)}
+        return np.array([parts.get(phase, np.zeros(3)) for phase in Phase])
+
+    @property
+    def budget(self) -> ForcePairs:
+        """What carries the blocks, and minus their force on the sheet; see `coupling.budget`."""
+        terms = {name: (float(f[0]), float(f[1])) for name, f in self.layer.budget.items()}
+        x, z = terms.pop("on_sheet")
+        return {**terms, "staggering": (-x, -z)}
+
+    @property
+    def mass(self) -> float:
+        """True mass of all blocks that are followed [kg]."""
+        return self.layer.mass
+
+    @property
+    def cleared_mass(self) -> float:
+        """Mass of all blocks that have left [kg]."""
+        return self.layer.gone.mass
+
+    @property
+    def energy(self) -> dict[str, float]:
+        """Energy of the blocks by term [J]; see `rubble.energy`."""
+        kinetic, potential = self._arrivals.born
+        return {**energy_terms(self.layer), "born_kinetic": float(kinetic), "born_potential": float(potential)}
+
+    @property
+    def momenta(self) -> dict[str, float]:
+        """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
+        lost = {"cleared": self.layer.gone.momentum, "crushed": self.layer.crushed.momentum}
+        return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
+
+
+def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:
+    """Sum of the forces on one edge, in x and z [N]."""
+    total = forces.force[np.isin(forces.nodes, edge.nodes)].sum(axis=0)
+    return float(total[0]), float(total[2])
+
+
+def _ignore(mass: float) -> None:
+    """Nobody keeps books."""

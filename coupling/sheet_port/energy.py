@@ -1,0 +1,34 @@
+"""The sheet's terms of the energy balance."""
+
+from __future__ import annotations
+
+from lattice.energy import EnergyBooks
+
+
+def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
+    """Energy of the sheet by term, for an observer at rest [J]; see `lattice.energy` and `coupling.energy`.
+
+    The lattice counts for one who moves along with ``drift`` [m/s]: to one at rest a force does drift times its impulse
+    more work.
+    """
+    friction, contact = e.rub.work + drift * e.rub.push, e.touch.work + drift * e.touch.push
+    crushed = e.crushed.elastic + e.crushed.foundation + e.crushed.kinetic_at(drift)
+    return {
+        "drift_work": drift * e.hold,
+        "received_work": e.received_at(drift),
+        "sheet_elastic": e.now.elastic,
+        "sheet_foundation": e.now.foundation,
+        "sheet_kinetic": e.now.kinetic_at(drift),
+        "contact_friction_loss": -friction,
+        "contact_crushing_loss": friction - contact,
+        "damping_loss": e.damping,
+        "scheme_loss": e.scheme,
+        "fracture_loss": e.fracture,
+        "edge_crushed_loss": crushed,
+        "left_elastic": e.pieces.elastic,
+        "left_foundation": e.pieces.foundation,
+        "left_kinetic": e.pieces.kinetic_at(drift),
+        "contact_work": e.contact,
+        "rubble_work": e.received,
+        "sheet_energy_residual": e.residual,
+    }

@@ -1,0 +1,53 @@
+"""What a window of the sheet tells: cells fail, the floe splits, pieces break off, ice leaves the water."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coupling.interface import Array, Event, Fragment
+
+
+def event(
+    t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str, length: float = 0.0, area: float = 0.0
+) -> Event:
+    """An event at ``where`` (3,) [m] under a load (3,) [N]; see `coupling.interface.Event`."""
+    force = (float(load[0]), float(load[1]), float(load[2]))
+    place = (float(where[0]), float(where[1]), float(where[2]))
+    return Event(t_ns, kind, force, cells, place, text, length, area)
+
+
+def failures(t_ns: int, load: Array, cells: int, where: Array, parts: int | None, quiet: bool) -> list[Event]:
+    """``cells`` have failed about ``where``, after a quiet window or not; ``parts`` if there are more of them now."""
+    events = []
+    if quiet:
+        text = "1 cell fails" if cells == 1 else f"{cells} cells fail"
+        events.append(event(t_ns, "cell_failure", load, cells, where, text))
+    if parts is not None:
+        events.append(event(t_ns, "split", load, cells, where, f"the floe splits, {parts} parts stay in the lattice"))
+    return events
+
+
+def departure(t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
+    """A piece leaves the lattice, in front of the structure or elsewhere, after ``cells`` have failed."""
+    where = np.average(f.position, axis=0, weights=f.length * f.width)
+    length = max(float(f.length[f.column == c].sum()) for c in np.unique(f.column))
+    area = float((f.length * f.width).sum())
+    text = f"a piece of {area:.0f} m2, {f.mass.sum() / 1e3:.0f} t"
+    events = []
+    if at_structure:
+        what = f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"
+        events.append(event(t_ns, "circumferential", load, cells, where, what, length, area))
+    return [*events, event(t_ns, "hand_over", load, cells, where, f"{text}, becomes rubble", length, area)]
+
+
+def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) -> Event:
+    """Where the lattice's foundation ends.
+
+    It pulls lifted ice down with rho_w g w, the missing buoyancy. That is right until the underside leaves the water at
+    w = draft; beyond, it pulls too much.
+    """
+    text = (
+        f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "
+        "from here on the linear foundation pulls it down with more than its weight"
+    )
+    return event(t_ns, "out_of_water", load, 0, where, text)

@@ -1,0 +1,62 @@
+"""Where the nodes of the drifting lattice are and how they move in the fixed frame, now and over the last window."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coupling.interface import Array, IntArray
+from lattice.floe import Floe
+from lattice.state import State
+
+
+class Motion:
+    """The frame of the lattice drifts along +x with ``velocity``; its states are displacements in that frame."""
+
+    def __init__(self, sheet: Floe, velocity: float):
+        self.sheet, self.velocity = sheet, velocity
+        self.z_mid = sheet.ice.freeboard - 0.5 * sheet.ice.h  #: middle of the floating sheet [m]
+        self.setback = 0.0  #: distance by which the floe starts farther back than its grid [m]
+        self.t = 0.0  #: now [s]
+        self._start = 0.0, sheet.state  #: time and state at the start of the last window
+
+    def begin(self, t: float) -> None:
+        """A window begins at ``t`` [s] with the state that the sheet has."""
+        self.t = t
+        self._start = t, self.sheet.state
+
+    def position(self, nodes: IntArray) -> Array:
+        """Positions of nodes now, (n, 3) [m]."""
+        return self._place(nodes, self.sheet.state, self.t)
+
+    def velocities(self, nodes: IntArray) -> Array:
+        """Velocities of nodes now, (n, 3) [m/s]."""
+        s, out = self.sheet.state, np.empty((len(nodes), 3))
+        out[:, :2], out[:, 2] = s.u_dot[nodes] + (self.velocity, 0.0), s.q_dot[nodes, 0]
+        return out
+
+    def displacement(self, nodes: IntArray) -> Array:
+        """How far nodes have come in the last window, (n, 3) [m]."""
+        return self.position(nodes) - self._before(nodes)
+
+    def now(self, nodes: IntArray) -> tuple[Array, Array]:
+        """Position (n, 3) [m] and velocity in x and z (n, 2) [m/s] now."""
+        return self.position(nodes), self.velocities(nodes)[:, ::2]
+
+    def mean(self, nodes: IntArray) -> tuple[Array, Array]:
+        """The same at the start of the last window, and on average over it."""
+        return self._before(nodes), (self.displacement(nodes) / self.window)[:, ::2]
+
+    @property
+    def window(self) -> float:
+        """Length of the last window [s]."""
+        return self.t - self._start[0]
+
+    def _before(self, nodes: IntArray) -> Array:
+        t, state = self._start
+        return self._place(nodes, state, t)
+
+    def _place(self, nodes: IntArray, s: State, t: float) -> Array:
+        x, y = self.sheet.grid.xy[nodes].T
+        return np.column_stack(
+            (x - self.setback + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1], self.z_mid + s.q[nodes, 0])
+        )

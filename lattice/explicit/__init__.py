@@ -1,0 +1,1 @@
+"""The explicit engine: sub-steps below the critical one in compiled loops, for waves and running cracks."""

@@ -1,0 +1,192 @@
+"""The explicit engine: the same lattice as `lattice.implicit.engine`, marched in sub-steps below the critical one.
+
+Waves and the inertia of a crack are resolved. The sub-step is a fixed share of the critical step of the true largest
+frequency, damping included; failed cells only lower that frequency, since their mass stays.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from lattice.assembly import assemble
+from lattice.contact import EdgeContact, lever_of, point_displacement
+from lattice.explicit import layout
+from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
+from lattice.explicit.kernels import push, sweep
+from lattice.explicit.layout import Motion, PerNode
+from lattice.explicit.march import march
+from lattice.explicit.screen import screen_of, thresholds
+from lattice.grid import Array, BoolArray, Grid, IntArray
+from lattice.ice import Ice
+from lattice.implicit.engine import Engine
+from lattice.state import State
+from lattice.stepper import critical_step
+from lattice.stiffness import Springs
+
+#: longest sub-step: the critical one is exact (a test runs 0.999 and 1.01 of it), a tenth is left for the contact's
+#: stiffness, which the frequency of the lattice alone does not know [-]
+SHARE_OF_CRITICAL = 0.9
+
+
+@dataclass(frozen=True)
+class Marched:
+    """Some sub-steps."""
+
+    steps: int
+    failed: bool  #: a cell is overloaded at the end of the last one
+    contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
+    contact_work: float  #: [J]
+    work: Array  #: (loads,) of the other forces [J]
+    loss: float  #: taken by hydrodynamic and material damping [J]
+
+
+class ExplicitEngine(Engine):
+    """Leapfrog of a sheet that loses cells; `Engine` keeps masses, springs and the stiffness of single points.
+
+    Nothing in its arrays outlives a window: `set_cells` and `start` fill them.
+    """
+
+    def __init__(
+        self,
+        grid: Grid,
+        ice: Ice,
+        springs: Springs,
+        window: float,
+        *,
+        held_in_plane: BoolArray,
+        damping: float = 0.0,
+        alpha: float = 0.0,
+        step: float | None = None,
+    ):
+        """``window`` [s] is cut into equal sub-steps of at most ``step`` [s] (default: `SHARE_OF_CRITICAL`)."""
+        super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha)
+        self.critical = self._critical_step()
+        self._springs, self._longest = layout.half_springs(springs, grid.d), step
+        if step is not None and not 0.0 < step <= self.critical:
+            raise ValueError(
+                f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
+                f"{self.critical:.3g} s (largest frequency of the lattice, damping included)"
+            )
+        self.damping = damping
+        self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
+        self.set_window(window)
+
+    def set_window(self, window: float) -> None:
+        """Cuts windows of this length [s] from the next `start` on."""
+        self.window = window
+        self.sub_steps = math.ceil(window / (self._longest or SHARE_OF_CRITICAL * self.critical))
+        self.allocate(window / self.sub_steps)
+
+    def _critical_step(self) -> float:
+        K_u, K_q = assemble(self.grid, self.rows_u).tocsr(), assemble(self.grid, self.rows_q).tocsr()
+        floating, damped = K_q + sp.diags(self.k_f), self.alpha * K_q + sp.diags(self.C_q)
+        return min(critical_step(K_u, self.alpha * K_u, self.M_u), critical_step(floating, damped, self.M_q))
+
+    def allocate(self, dt: float) -> None:
+        """New arrays for sub-steps of this length [s], whether it is stable or not; all cells and nodes are there."""
+        g, ice = self.grid, self.ice
+        self.dt = dt
+        kick = PerNode(np.where(self._held[::2], 0.0, dt / self.M_u[::2]), dt / self.M_q[::3], dt / self.M_q[1::3])
+        pace = layout.pace(ice, dt, self.alpha, self.damping)
+        self.mesh, self.screen = layout.mesh(g, kick, self._springs, pace, dt), screen_of(ice)
+        self.motion = layout.motion(g)
+        self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
+
+    def set_cells(self, live: BoolArray, limits: Array, present: BoolArray) -> None:
+        """Cells that carry force, their tensile limits (cells,) [Pa], and the nodes that are still in the lattice.
+
+        `march` stops at a limit; an infinite one stops it never.
+        """
+        g = self.grid
+        shape = (g.nx - 1, g.ny - 1)
+        self.mesh.intact[1 : g.nx, 1 : g.ny] = live.reshape(shape)
+        threshold = np.where(live, thresholds(limits, self.ice, g.d), np.inf)
+        self.mesh.threshold[: g.nx - 1, : g.ny - 1] = threshold.reshape(shape)
+        gone = ~present.reshape(g.nx, g.ny)
+        for array in self.motion:
+            array[:, : g.nx, : g.ny][:, gone] = 0.0
+
+    # ---- states ------------------------------------------------------------------------------------------------
+
+    def start(self, s: State, present: BoolArray, forces: tuple[PointForces, ...]) -> None:
+        """Takes over a state; the velocity goes back by half a sub-step."""
+        on, now = present[:, None], self.motion
+        self.put(now.y, np.hstack((s.u, s.q)) * on)
+        self.put(now.v, np.hstack((s.u_dot, s.q_dot)) * on)
+        x, v = now.y.copy(), now.v.copy()
+        now.v[:] = 1.5 * v - 0.5 * self._next_velocity(Motion(x + self.alpha * v, v), forces)
+        now.y[:] = x + self.alpha * now.v
+
+    def state(self, old: State, present: BoolArray, forces: tuple[PointForces, ...]) -> State:
+        """The state now under these forces; nodes that have left keep theirs."""
+        y, before = self.motion
+        after = self._next_velocity(Motion(y.copy(), before), forces)
+        v, jump = 0.5 * (before + after), self.get(after - before)
+        self.ripple = 0.125 * float(
+            (self.M_u * jump[:, :2].ravel() ** 2).sum() + (self.M_q * jump[:, 2:].ravel() ** 2).sum()
+        )
+        x, x_dot, on = self.get(y - self.alpha * before), self.get(v), present[:, None]
+        return State(
+            np.where(on, x[:, :2], old.u),
+            np.where(on, x[:, 2:], old.q),
+            np.where(on, x_dot[:, :2], old.u_dot),
+            np.where(on, x_dot[:, 2:], old.q_dot),
+        )
+
+    def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
+        """Velocity after one more sub-step; ``y`` is used up, ``v`` is not."""
+        mesh, trial = self.mesh, Motion(now.y, now.v.copy())
+        sweep(trial, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
+        for f in forces:
+            push(f.row, f.column, f.force, trial, mesh.kick, mesh.pace.go)
+        return trial.v
+
+    def put(self, array: Array, values: Array) -> None:
+        """Writes values (nodes, 5) into one of the arrays of `Motion`."""
+        array[:] = 0.0
+        array[:, : self.grid.nx, : self.grid.ny] = values.T.reshape(5, self.grid.nx, self.grid.ny)
+
+    def get(self, array: Array) -> Array:
+        """Values (nodes, 5) of one of the arrays of `Motion`."""
+        return array[:, : self.grid.nx, : self.grid.ny].reshape(5, -1).T
+
+    def displacement(self, ago: float = 0.0) -> tuple[Array, Array]:
+        """U (n, 2) and q (n, 3) now, or ``ago`` sub-steps before, up to one."""
+        y, v = self.motion
+        x = self.get(y - (self.alpha + ago * self.dt) * v)
+        return np.ascontiguousarray(x[:, :2]), np.ascontiguousarray(x[:, 2:])
+
+    # ---- forces ------------------------------------------------------------------------------------------------
+
+    def touch(self, t: float, contact: EdgeContact) -> Touch:
+        """Contact force and tangent at time t for the displacements now."""
+        return touch_at(t, contact, self.touching(contact), self.grid.ny)
+
+    def touching(self, contact: EdgeContact) -> Array:
+        """Displacements of the points of action now, (m, 3) [m]."""
+        u, q = np.split(self.at(contact.nodes), [2], axis=1)
+        return point_displacement(u, q, np.arange(len(u)), lever_of(contact))
+
+    def at(self, nodes: IntArray) -> Array:
+        """Displacements of some nodes now, (k, 5)."""
+        row, column = np.divmod(nodes, self.grid.ny)
+        y, v = self.motion
+        return (y[:, row, column] - self.alpha * v[:, row, column]).T
+
+    def march(self, steps: int, load: PointForces, touch: Touch, lively: bool) -> Marched:
+        """Up to ``steps`` sub-steps, to the first failure; damping is taken stock of in each or in the first only."""
+        m = len(touch.row)
+        sums = Sums(np.zeros((m, 5)), np.zeros((m, 3)), np.zeros(len(load.first) - 1))
+        made = self.loop(steps, 1 if lively else steps, load, touch, sums)
+        loss = made.loss * (1 if lively else made.steps)
+        work, contact_work = self.dt * sums.work, self.dt * made.contact_work
+        return Marched(made.steps, made.overloaded > 0, sums.contact / made.steps, contact_work, work, loss)
+
+    def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
+        """The compiled loop. A lattice whose cells carry more than springs runs its own here."""
+        made: Made = march(steps, stride, self.motion, self.mesh, self.screen, load, touch, sums)
+        return made

@@ -1,0 +1,86 @@
+"""Forces on single nodes as the compiled loops take them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lattice.contact import EdgeContact
+from lattice.grid import Array, IntArray
+from lattice.loads import Loads
+
+
+class PointForces(NamedTuple):
+    """Constant forces on nodes, load after load."""
+
+    row: IntArray  #: (k,)
+    column: IntArray  #: (k,)
+    force: Array  #: (k, 5) [N], [N m]
+    first: IntArray  #: (loads + 1,) where each load begins; the last entry is k
+
+
+class Touch(NamedTuple):
+    """A contact that is linear in the displacement of its points."""
+
+    row: IntArray  #: (m,)
+    column: IntArray  #: (m,)
+    height: Array  #: (m,) of the points above the middle of the sheet [m]
+    lead: Array  #: (m,) of the points ahead of their nodes [m]
+    at: Array  #: (m, 3) displacement of the points at which ``force`` holds [m]
+    force: Array  #: (m, 3) [N]
+    tangent: Array  #: (m, 3, 3) [N/m]
+
+    def at_once(self) -> PointForces:
+        """The force for the displacement ``at``, with its moments about the middle."""
+        force = np.hstack((self.force, self.height[:, None] * self.force[:, :2]))
+        if self.lead.any():
+            force[:, 3] -= self.lead * self.force[:, 2]
+        return PointForces(self.row, self.column, force, np.array([0, len(force)]))
+
+
+class Sums(NamedTuple):
+    """What a run of sub-steps adds up, and room for it."""
+
+    now: Array  #: (m, 5) contact in the present sub-step [N], [N m]
+    contact: Array  #: (m, 3) sum of the contact over the sub-steps [N]
+    work: Array  #: (loads,) sum of the power of each load [W]
+
+
+class Made(NamedTuple):
+    """What the compiled loop gives back beside its `Sums`."""
+
+    steps: int
+    overloaded: int  #: faces of cells at or past their limit at the end of the last one
+    contact_work: float  #: sum of the power of the contact [W]
+    loss: float  #: work of damping in the sub-steps that were looked at [J]
+
+
+NOTHING = PointForces(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 5)), np.zeros(1, np.int64))
+
+
+def point_forces(loads: Loads, columns: int) -> PointForces:
+    """Those forces of loads that are not zero; ``columns`` nodes across."""
+    parts = []
+    for load in loads:
+        force = np.hstack((load.force_u, load.force_q))
+        nodes = np.flatnonzero(force.any(axis=1))
+        parts.append((nodes, force[nodes]))
+    if not parts:
+        return NOTHING
+    nodes, force = (np.concatenate(p) for p in zip(*parts, strict=True))
+    first = np.concatenate(([0], np.cumsum([len(n) for n, _ in parts])))
+    return PointForces(*np.divmod(nodes, columns), np.ascontiguousarray(force), first)
+
+
+def touch_at(t: float, contact: EdgeContact, at: Array, columns: int) -> Touch:
+    """Force and tangent of a contact at time t for displacements ``at`` (m, 3) of its points [m]."""
+    force, tangent = contact.evaluate(t, np.ascontiguousarray(at))
+    return Touch(
+        *np.divmod(contact.nodes, columns),
+        np.ascontiguousarray(contact.height),
+        np.ascontiguousarray(contact.lead),
+        np.ascontiguousarray(at),
+        np.ascontiguousarray(force),
+        np.ascontiguousarray(tangent),
+    )

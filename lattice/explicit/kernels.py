@@ -1,0 +1,125 @@
+"""Explicit leapfrog of the whole lattice, five degrees of freedom per node, in compiled loops.
+
+    v(n+1/2) = v(n-1/2) + dt / M (F - K (x + alpha v) - foundation),   x(n+1) = x(n) + dt v(n+1/2)
+
+Spring forces and material damping alpha K v (2.27) act on the same differences, so the loops carry the *effective*
+displacement y = x + alpha v and never x itself: y(n+1) = y(n) + (dt + alpha) v(n+1/2) - alpha v(n-1/2).
+
+Two passes over each row of nodes: first the force of every connection that starts there (each once), then every node
+gathers its own. Both run along j without a branch. What one pass leaves for the other lies in ``rows``, one flat
+array with lines at a constant distance: only then can the compiler prove that they do not overlap, and use its
+widest vectors. Broken cells have the weight 0; an axial connection carries the mean weight of its two cells.
+
+The arrays are those of `lattice.explicit.layout`.
+"""
+
+from __future__ import annotations
+
+from lattice.compiled import compiled
+from lattice.explicit.layout import (
+    LANES,
+    LINE,
+    LINES,
+    PHI_X,
+    PHI_Y,
+    U_X,
+    U_Y,
+    HalfSprings,
+    Motion,
+    Pace,
+    PerNode,
+    W,
+)
+from lattice.grid import Array, IntArray
+
+NX, SX, QX, BX, TX, NY, SY, QY, BY, TY, D1, D2, G1, G2, C0, C1, C2, C3, C4 = (k * LINE + LANES for k in range(LINES))
+CARRIED = 14 * LINE  #: where the sums begin in ``rows`` that a row leaves for the next one
+
+
+@compiled(nogil=True)
+def connections(i: int, ny: int, y: Array, intact: Array, springs: HalfSprings, rows: Array) -> None:
+    """Forces of the connections from row i along x, along y and along both diagonals, (2.2)-(2.5) and chapter 3."""
+    kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
+    kd, gd, half = springs.K_n_dia, springs.G_dia, springs.lever
+    for j in range(ny):
+        cell = intact[i + 1, j + 1]
+        x, z = cell + intact[i + 1, j], cell + intact[i, j + 1]
+        a0, a1, a2, a3, a4 = y[U_X, i, j], y[U_Y, i, j], y[W, i, j], y[PHI_X, i, j], y[PHI_Y, i, j]
+        b0, b1, b2, b3, b4 = y[U_X, i + 1, j], y[U_Y, i + 1, j], y[W, i + 1, j], y[PHI_X, i + 1, j], y[PHI_Y, i + 1, j]
+        c0, c1, c2, c3, c4 = y[U_X, i, j + 1], y[U_Y, i, j + 1], y[W, i, j + 1], y[PHI_X, i, j + 1], y[PHI_Y, i, j + 1]
+        e0, e1, e3, e4 = y[U_X, i + 1, j + 1], y[U_Y, i + 1, j + 1], y[PHI_X, i + 1, j + 1], y[PHI_Y, i + 1, j + 1]
+        rows[NX + j] = kn * x * (b0 - a0)
+        rows[SX + j] = ks * x * (b1 - a1)
+        rows[QX + j] = ko * x * (b2 - a2 + half * (a3 + b3))
+        rows[BX + j] = gr * x * (b3 - a3)
+        rows[TX + j] = gt * x * (b4 - a4)
+        rows[NY + j] = kn * z * (c1 - a1)
+        rows[SY + j] = ks * z * (c0 - a0)
+        rows[QY + j] = ko * z * (c2 - a2 + half * (a4 + c4))
+        rows[BY + j] = gr * z * (c4 - a4)
+        rows[TY + j] = gt * z * (c3 - a3)
+        rows[D1 + j] = kd * cell * (e0 - a0 + e1 - a1)
+        rows[D2 + j] = kd * cell * (b0 - c0 - b1 + c1)
+        rows[G1 + j] = gd * cell * (e3 - a3 + e4 - a4)
+        rows[G2 + j] = gd * cell * (b3 - c3 - b4 + c4)
+
+
+@compiled(nogil=True)
+def gather(i: int, ny: int, motion: Motion, kick: PerNode, lever: float, pace: Pace, rows: Array) -> None:
+    """Every node of row i sums its connections and moves; what row i + 1 gets from them is left in C0 to C4."""
+    y, v, half = motion.y, motion.v, lever
+    alpha, go, buoy, drag = pace.alpha, pace.go, pace.buoy, pace.drag
+    for j in range(ny):
+        f = rows[C0 + j] + rows[NX + j] + rows[SY + j] - rows[SY + j - 1] + rows[D1 + j] + rows[D2 + j - 1]
+        rows[C0 + j] = -rows[NX + j] - rows[D1 + j - 1] - rows[D2 + j]
+        old = v[U_X, i, j]
+        v[U_X, i, j] = old + kick.u[i, j] * f
+        y[U_X, i, j] += go * v[U_X, i, j] - alpha * old
+    for j in range(ny):
+        f = rows[C1 + j] + rows[SX + j] + rows[NY + j] - rows[NY + j - 1] + rows[D1 + j] - rows[D2 + j - 1]
+        rows[C1 + j] = -rows[SX + j] - rows[D1 + j - 1] + rows[D2 + j]
+        old = v[U_Y, i, j]
+        v[U_Y, i, j] = old + kick.u[i, j] * f
+        y[U_Y, i, j] += go * v[U_Y, i, j] - alpha * old
+    for j in range(ny):
+        f = rows[C2 + j] + rows[QX + j] + rows[QY + j] - rows[QY + j - 1]
+        rows[C2 + j] = -rows[QX + j]
+        old = v[W, i, j]
+        v[W, i, j] = old + kick.w[i, j] * f - buoy * y[W, i, j] - drag * old
+        y[W, i, j] += go * v[W, i, j] - alpha * old
+    for j in range(ny):
+        f = rows[C3 + j] + rows[BX + j] + rows[TY + j] - rows[TY + j - 1] + rows[G1 + j] + rows[G2 + j - 1]
+        f -= half * rows[QX + j]
+        rows[C3 + j] = -rows[BX + j] - rows[G1 + j - 1] - rows[G2 + j] - half * rows[QX + j]
+        old = v[PHI_X, i, j]
+        v[PHI_X, i, j] = old + kick.phi[i, j] * f
+        y[PHI_X, i, j] += go * v[PHI_X, i, j] - alpha * old
+    for j in range(ny):
+        f = rows[C4 + j] + rows[TX + j] + rows[BY + j] - rows[BY + j - 1] + rows[G1 + j] - rows[G2 + j - 1]
+        f -= half * (rows[QY + j] + rows[QY + j - 1])
+        rows[C4 + j] = -rows[TX + j] - rows[G1 + j - 1] + rows[G2 + j]
+        old = v[PHI_Y, i, j]
+        v[PHI_Y, i, j] = old + kick.phi[i, j] * f
+        y[PHI_Y, i, j] += go * v[PHI_Y, i, j] - alpha * old
+
+
+@compiled(nogil=True)
+def sweep(motion: Motion, intact: Array, kick: PerNode, springs: HalfSprings, pace: Pace, rows: Array) -> None:
+    """One step of all nodes without external forces, in place."""
+    nx, ny = kick.u.shape
+    rows[CARRIED:] = 0.0
+    for i in range(nx):
+        connections(i, ny, motion.y, intact, springs, rows)
+        gather(i, ny, motion, kick, springs.lever, pace, rows)
+
+
+@compiled(nogil=True)
+def push(row: IntArray, column: IntArray, force: Array, motion: Motion, kick: PerNode, go: float) -> None:
+    """Adds forces (k, 5) on single nodes to the step that `sweep` has just made; go = dt + alpha."""
+    for k in range(len(row)):
+        i, j = row[k], column[k]
+        for c in range(5):
+            share = kick.u[i, j] if c < W else kick.w[i, j] if c == W else kick.phi[i, j]
+            dv = share * force[k, c]
+            motion.v[c, i, j] += dv
+            motion.y[c, i, j] += go * dv

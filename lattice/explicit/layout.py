@@ -1,0 +1,140 @@
+"""How the arrays of the compiled loops lie in memory, and their names.
+
+All are padded so that no node needs a special case, with every row at the start of a cache line: n_y below is the
+number of columns rounded up to whole `LANES`, m_y is n_y + `LANES`. The loops carry the *effective* displacement
+y = x + alpha v and never x itself, see `lattice.explicit.kernels`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from lattice.grid import Array, Grid
+from lattice.ice import Ice
+from lattice.stiffness import Springs
+
+LANES = 8  #: doubles in the widest vector
+LINE = 1048  #: distance of the lines of ``rows``: an odd number of cache lines, so that they use all sets of a cache
+LINES = 19  #: 14 connection forces, 5 sums that a row leaves for the next one; each begins after LANES zeros
+U_X, U_Y, W, PHI_X, PHI_Y = range(5)  #: the degrees of freedom of a node, first index of ``y`` and ``v``
+
+
+class Motion(NamedTuple):
+    """Where all nodes are and how they move; zero on the padding and on nodes that have left."""
+
+    y: Array  #: (5, n_x+1, m_y) effective displacement [m], [rad]
+    v: Array  #: (5, n_x+1, m_y) velocity half a sub-step before [m/s], [rad/s]
+
+
+class PerNode(NamedTuple):
+    """A value of each node that differs between its degrees of freedom."""
+
+    u: Array  #: (n_x, n_y) of both in-plane displacements
+    w: Array  #: (n_x, n_y) of the deflection
+    phi: Array  #: (n_x, n_y) of both rotations
+
+
+class HalfSprings(NamedTuple):
+    """Half the constants of `stiffness.Springs`: what each of two cells gives to an axial connection."""
+
+    K_n: float
+    K_s: float
+    K_out: float
+    G_r: float
+    G_t: float
+    K_n_dia: float
+    G_dia: float
+    lever: float  #: d/2 [m]
+
+
+class Pace(NamedTuple):
+    """What a sub-step does to every node."""
+
+    alpha: float  #: material damping [s]
+    go: float  #: dt + alpha [s]
+    buoy: float  #: dt k_f / (rho h) [1/s]
+    drag: float  #: dt (c - alpha k_f) / (rho h) [-]
+
+
+class Scratch(NamedTuple):
+    """Room for `march.damped`, each (5, n_x+1, m_y)."""
+
+    before: Array
+    y: Array
+    after: Array
+
+
+class Mesh(NamedTuple):
+    """The lattice as the loops see it."""
+
+    intact: Array  #: (n_x+1, m_y) 1 or 0, cell (i, j) at [i+1, j+1]; zero all around
+    threshold: Array  #: (n_x, n_y) of `screen.overloaded` for cell (i, j), infinite where there is none
+    kick: PerNode  #: dt / mass; zero where held [s/kg], [s/(kg m2)]
+    mass: PerNode  #: zero where held [kg], [kg m2]
+    springs: HalfSprings
+    pace: Pace
+    rows: Array  #: (LINES * LINE,) what one pass over a row leaves for the other
+    scratch: Scratch
+
+
+def aligned(*shape: int) -> Array:
+    """Zeros that begin at a cache line: a vector that lies across two lines costs two accesses (measured: 30 %)."""
+    raw = np.zeros(math.prod(shape) + LANES)
+    start = -raw.ctypes.data // 8 % LANES
+    return raw[start : start + math.prod(shape)].reshape(shape)
+
+
+def motion(grid: Grid) -> Motion:
+    """Rest."""
+    shape = 5, grid.nx + 1, _wide(grid)
+    return Motion(aligned(*shape), aligned(*shape))
+
+
+def mesh(grid: Grid, kick: PerNode, springs: HalfSprings, pace: Pace, dt: float) -> Mesh:
+    """A lattice of no cells; ``kick`` (nodes,) each. ValueError where the grid is too wide for the loops."""
+    wide, columns = _wide(grid), _wide(grid) - LANES
+    if wide > LINE:
+        raise ValueError(f"{grid.ny} nodes across are too many for the explicit engine: use at most {LINE - LANES}")
+    room, padded, masses = aligned(3, 5, grid.nx + 1, wide), aligned(3, grid.nx, columns), aligned(3, grid.nx, columns)
+    threshold = aligned(grid.nx, columns)
+    threshold[:] = np.inf
+    for k, values in enumerate(kick):
+        padded[k, :, : grid.ny] = values.reshape(grid.nx, grid.ny)
+    np.divide(dt, padded, out=masses, where=padded > 0.0)
+    return Mesh(
+        aligned(grid.nx + 1, wide),
+        threshold,
+        PerNode(*padded),
+        PerNode(*masses),
+        springs,
+        pace,
+        aligned(LINES * LINE),
+        Scratch(*room),
+    )
+
+
+def _wide(grid: Grid) -> int:
+    return -(-grid.ny // LANES) * LANES + LANES
+
+
+def half_springs(s: Springs, d: float) -> HalfSprings:
+    """Constants for cells of size d [m]."""
+    return HalfSprings(
+        K_n=0.5 * s.K_n_axi,
+        K_s=0.5 * s.K_s_axi,
+        K_out=0.5 * s.K_out,
+        G_r=0.5 * s.G_r_axi,
+        G_t=0.5 * s.G_t_axi,
+        K_n_dia=0.5 * s.K_n_dia,
+        G_dia=0.5 * s.G_dia,
+        lever=0.5 * d,
+    )
+
+
+def pace(ice: Ice, dt: float, alpha: float, damping: float) -> Pace:
+    """Sub-steps of ``dt`` [s] with material ``alpha`` [s] and hydrodynamic ``damping`` [N s/m3]."""
+    per_mass = dt / (ice.rho_i * ice.h)
+    return Pace(alpha, dt + alpha, per_mass * ice.k_f, per_mass * (damping - alpha * ice.k_f))

@@ -1,0 +1,108 @@
+"""Sub-steps of the explicit engine between two evaluations of the contact.
+
+A lattice whose cells carry more than springs needs a loop of its own in place of `march`, made of the same parts: its
+forces act between `sweep` and the first `push`, on nodes, like those of loads. See `ExplicitEngine.loop`.
+"""
+
+from __future__ import annotations
+
+from lattice.compiled import compiled
+from lattice.explicit.forces import Made, PointForces, Sums, Touch
+from lattice.explicit.kernels import push, sweep
+from lattice.explicit.layout import PHI_X, Mesh, Motion, Pace, PerNode, W
+from lattice.explicit.screen import Screen, overloaded
+from lattice.grid import Array, IntArray
+
+
+@compiled(nogil=True)
+def contact_force(touch: Touch, now: Array, motion: Motion, alpha: float) -> None:
+    """Contact at the end of its levers, linear about the displacement ``at``: into ``now`` (m, 5) [N], [N m]."""
+    y, v, height = motion.y, motion.v, touch.height
+    for k in range(len(height)):
+        i, j = touch.row[k], touch.column[k]
+        now[k, :3] = touch.force[k]
+        for b in range(3):
+            moved = y[b, i, j] - alpha * v[b, i, j] - touch.at[k, b]
+            if b == W and touch.lead[k] != 0.0:
+                moved -= touch.lead[k] * (y[PHI_X, i, j] - alpha * v[PHI_X, i, j])
+            if b < W:
+                moved += height[k] * (y[b + 3, i, j] - alpha * v[b + 3, i, j])
+            for a in range(3):
+                now[k, a] += touch.tangent[k, a, b] * moved
+        for a in range(2):
+            now[k, a + 3] = height[k] * now[k, a]
+        if touch.lead[k] != 0.0:
+            now[k, PHI_X] -= touch.lead[k] * now[k, W]
+
+
+@compiled(nogil=True)
+def damped(motion: Motion, mesh: Mesh) -> None:
+    """Into the scratch: velocities after a sub-step in which nothing but damping acts, and those before it."""
+    room, pace = mesh.scratch, mesh.pace
+    room.before[:] = motion.v
+    room.after[:] = motion.v
+    room.y[:] = pace.alpha * motion.v
+    water = Pace(0.0, 0.0, 0.0, pace.drag + pace.alpha * pace.buoy)  # dt c / (rho h)
+    sweep(Motion(room.y, room.after), mesh.intact, mesh.kick, mesh.springs, water, mesh.rows)
+
+
+@compiled(nogil=True)
+def dissipated(v: Array, before: Array, after: Array, mass: PerNode) -> float:
+    """Work that damping took in a sub-step [J]: mass x loss of velocity x mean velocity, exact for leapfrog."""
+    work = 0.0
+    nx, ny = mass.u.shape
+    for i in range(nx):
+        for j in range(ny):
+            node = 0.0
+            for c in range(5):
+                part = mass.u[i, j] if c < W else mass.w[i, j] if c == W else mass.phi[i, j]
+                node += part * (before[c, i, j] - after[c, i, j]) * (before[c, i, j] + v[c, i, j])
+            work += 0.5 * node
+    return work
+
+
+@compiled(nogil=True)
+def power(row: IntArray, column: IntArray, force: Array, v: Array, first: int, end: int) -> float:
+    """Of the forces ``first`` to ``end`` of (k, 5) on single nodes [W]."""
+    total = 0.0
+    for k in range(first, end):
+        for c in range(5):
+            total += force[k, c] * v[c, row[k], column[k]]
+    return total
+
+
+@compiled(nogil=True)
+def half_power(load: PointForces, touch: Touch, sums: Sums, v: Array) -> float:
+    """Half the power of the contact [W]; that of each load is added to its sum."""
+    for n in range(len(sums.work)):
+        sums.work[n] += 0.5 * power(load.row, load.column, load.force, v, load.first[n], load.first[n + 1])
+    of_contact: float = power(touch.row, touch.column, sums.now, v, 0, len(touch.row))
+    return 0.5 * of_contact
+
+
+@compiled(nogil=True)
+def march(
+    steps: int, stride: int, motion: Motion, mesh: Mesh, screen: Screen, load: PointForces, touch: Touch, sums: Sums
+) -> Made:
+    """Up to ``steps`` sub-steps; stops after the first one at whose end a cell is overloaded.
+
+    Work is exact for leapfrog: a force times the mean of the velocities before and after. That of damping is taken in
+    every ``stride``-th sub-step, which costs as much as a sub-step.
+    """
+    pace, contact_work, loss = mesh.pace, 0.0, 0.0
+    for step in range(steps):
+        contact_force(touch, sums.now, motion, pace.alpha)
+        sums.contact[:] += sums.now[:, :3]
+        if step % stride == 0:
+            damped(motion, mesh)
+        contact_work += half_power(load, touch, sums, motion.v)
+        sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
+        push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
+        push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
+        contact_work += half_power(load, touch, sums, motion.v)
+        if step % stride == 0:
+            loss += dissipated(motion.v, mesh.scratch.before, mesh.scratch.after, mesh.mass)
+        count = overloaded(motion, mesh.threshold, screen, pace.alpha)
+        if count > 0:
+            return Made(step + 1, count, contact_work, loss)
+    return Made(steps, 0, contact_work, loss)

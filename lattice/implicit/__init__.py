@@ -1,0 +1,1 @@
+"""The implicit engine: long steps of the whole sheet with a direct solver that loses cells."""

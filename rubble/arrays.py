@@ -1,0 +1,42 @@
+"""Arrays of this package: their types, and tables of records with named fields.
+
+A table that kernels share is an array of records: one row per body, edge or contact, every number under its name. All
+numbers of a row stand side by side in memory, as pymunk's callbacks need it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+Records = NDArray[np.void]  #: (n,) rows with named fields; the name of the dtype says which
+Record = Any  #: one row: `numpy.void` in Python, a pointer to the row in a kernel
+
+
+def record(*names: str, integers: tuple[str, ...] = ()) -> np.dtype[np.void]:
+    """A row of float64 fields, followed by int64 fields; numba reads it without padding."""
+    return np.dtype([*((n, np.float64) for n in names), *((n, np.int64) for n in integers)], align=True)
+
+
+def rows(records: Records, first: str | None = None, count: int | None = None) -> Array:
+    """``count`` float64 fields side by side from ``first`` on, as a view (n, count); without them all fields."""
+    dtype = records.dtype
+    names = dtype.names or ()
+    start = 0 if first is None else names.index(first)
+    width = len(names) if count is None else count
+    offset = int(dtype.fields[names[start]][1]) if dtype.fields else 0
+    shape, strides = (len(records), width), (records.strides[0], 8)
+    return np.ndarray(shape, np.float64, records, offset, strides) if len(records) else np.zeros(shape)
+
+
+def filled(dtype: np.dtype[np.void], data: object) -> Records:
+    """Records (n,) from their numbers (n, fields)."""
+    plain = np.array(data, dtype=np.float64).reshape(-1, len(dtype.names or ()))
+    out = np.zeros(len(plain), dtype)
+    rows(out)[:] = plain
+    return out

@@ -1,0 +1,62 @@
+"""The front of the sheet behind its first row: the ice leads its node by half a cell, and is met there."""
+
+import numpy as np
+import pytest
+
+from coupling.contact import CONTACTS, ContactLaw
+from coupling.sheet_port import SheetPort
+from coupling.structure import plane_slope
+from lattice.grid import Grid
+from lattice.ice import Ice
+from lattice.sheet import Sheet
+from lattice.stiffness import hrennikoff
+
+D = 2.0
+ICE = Ice(E=8.7e9, nu=1 / 3, h=1.0, rho_i=846.0, rho_w=1006.0, sigma_t=1e15, sigma_f=1e15, sigma_c=5e15)
+
+
+def port(contact="overlap", rows_gone=0):
+    grid = Grid.rectangle(20.0, 12.0, 11, 7, -20.0 - ICE.freeboard, -6.0)
+    held = np.zeros(grid.nodes, bool)
+    held[grid.edge_nodes("x-")] = True
+    sheet = Sheet(grid, ICE, hrennikoff(ICE), 0.05, held=held)
+    law = ContactLaw(200e3, 0.1, ICE.E / D)
+    out = SheetPort(sheet, plane_slope(np.pi / 4), law, 0.1, contact=CONTACTS[contact])
+    for row in range(rows_gone):
+        sheet.retire((10 - row) * 7 + np.arange(7))
+        out.front.renew()
+    return out
+
+
+def tilted(p, angle, lift):
+    """The whole sheet turned about y, as a rigid body: w = lift - angle x."""
+    s = p.sheet.state
+    s.q[:, 1] = angle
+    s.q[:, 0] = lift - angle * p.sheet.grid.xy[:, 0]
+    return p
+
+
+@pytest.mark.parametrize("rows_gone", [0, 1, 3])
+def test_the_overlap_is_that_of_the_true_front(rows_gone):
+    """A rigid sheet that dips its front: where it meets the slope of 45 degrees is geometry."""
+    p = tilted(port(rows_gone=rows_gone), 0.03, 0.2)
+    front = p.sheet.grid.xy[:, 0].max() - (rows_gone * D - (D / 2 if rows_gone else 0.0))
+    t = 60.0
+    L, _ = p.contact.overlap(t, p.front.displacement())
+    z = ICE.freeboard + 0.2 - 0.03 * front
+    np.testing.assert_allclose(L, max(front + 0.1 * t + z, 0.0), rtol=1e-12)
+    assert L.min() > 0.0
+
+
+@pytest.mark.parametrize("contact", ["overlap", "crushing"])
+def test_the_force_turns_the_node_by_its_lever(contact):
+    """Work that the force does on a small turn of the nodes: F_z times the way of the front, z F_x for the height."""
+    p = port(contact, rows_gone=2)
+    c, state = p.contact, p.sheet.state
+    force = c.evaluate(30.0, p.front.displacement())[0]
+    before = p.front.displacement()
+    state.q[:, 1] += 1e-3
+    work = (force * (p.front.displacement() - before)).sum()
+    assert c.lead == pytest.approx(D / 2)
+    assert work == pytest.approx(1e-3 * (c.height * force[:, 0] - D / 2 * force[:, 2]).sum(), rel=1e-9)
+    assert work > 0.0  # the slope presses the front down, which turns it that way
