@@ -97,7 +97,7 @@ class ExplicitSheet(Floe):
             if self._easing.any and not marched.failed:
                 self._ease()
         self._end(t + self.dt, loads, contact, out)
-        out.contact_mean = window.contact_mean(self.dt, contact.nodes)
+        out.contact_mean, out.contact_nodes = window.contact_mean(self.dt, contact.nodes)
         mean, applied = window.mean(self.dt), window.applied(self.dt)
         whole = Mean(mean, mean, 1.0, 0.0)
         out.reaction = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)

@@ -17,6 +17,7 @@ class Outcome:
     """What happened in one window."""
 
     contact_mean: Array = field(default_factory=lambda: np.empty((0, 3)))  #: on the edge nodes, over the window [N]
+    contact_nodes: IntArray = field(default_factory=lambda: np.empty(0, np.int64))  #: (m,) to which they belong
     contact_end: Array = field(default_factory=lambda: np.empty((0, 3)))  #: the same at its end
     failed: list[int] = field(default_factory=list)  #: cells in the order in which they failed
     causes: list[str] = field(default_factory=list)  #: of each: name of the criterion, or `TURNED_TOO_FAR`

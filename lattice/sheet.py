@@ -111,6 +111,7 @@ class Sheet(Floe):
         applied = self.support.applied(loads)
         out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), live, present, applied)
         out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
+        out.contact_nodes = contact.nodes
         self.state = step.state
 
     def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
@@ -137,7 +138,8 @@ class Sheet(Floe):
         live, present, old = self.live_cells, self.present, self.state
         end = edge_displacement(state, contact.nodes, plan.step.lever)
         force = contact.evaluate(t + self.dt, end)[0]
-        out = Outcome(plan.serve(self.energy, old, end, force, contact), force, parts=self.parts)
+        mean = plan.serve(self.energy, old, end, force, contact)
+        out = Outcome(mean, contact.nodes, force, parts=self.parts)
         cubic = of_cubic(old, state, self.dt)
         out.reaction = between(self.support, old, state, self.dt, cubic, live, present, Applied({}))
         self.state, self.utilisation = state, utilisation

@@ -31,10 +31,8 @@ def _convex_runs(face: Array) -> list[Array]:
 
 
 def _closed(part: Array, back: Array | float | None) -> Array:
-    if back is None:
-        rear = part[::-1] * np.array([-1.0, 1.0])
-    else:
-        rear = _rear(part, np.asarray(back, dtype=np.float64))
+    mirrored = part[::-1] * np.array([-1.0, 1.0])
+    rear = mirrored if back is None else _rear(part, np.asarray(back, dtype=np.float64))
     loop = np.concatenate([part, rear])
     kept: Array = loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]
     return kept

@@ -90,7 +90,7 @@ class SheetView:
 class ContactForces:
     """The structure on the sheet's edge, node by node: their sum is minus the load of the phase breaking."""
 
-    nodes: IntArray  #: (m,) node numbers of the edge, also those that touch nothing
+    nodes: IntArray  #: (m,) node numbers of the edge, also of those that touch nothing or have left in the window
     position: Array  #: (m, 3) where each force acts, at the end of the window [m]
     force: Array  #: (m, 3) mean over the window, on the sheet [N]
 

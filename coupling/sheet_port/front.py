@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from coupling.contact import OverlapContact
-from coupling.interface import Array, IntArray, Structure
+from coupling.interface import Array, ContactForces, IntArray, Structure
 from coupling.sheet_port.crushed_edge import CrushedEdge
 from coupling.sheet_port.motion import Motion
-from lattice.contact import edge_displacement, lever_of
+from lattice.contact import Lever, edge_displacement, lever_of
 from lattice.floe import Floe
 from lattice.memory import Memory, remember
+from lattice.outcome import Outcome
 
 
 class Front:
@@ -57,6 +58,20 @@ class Front:
     def displacement(self) -> Array:
         """Of the points of contact in the drifting frame, (m, 3) [m]."""
         return edge_displacement(self._sheet.state, self.contact.nodes, lever_of(self.contact))
+
+    def forces(self, out: Outcome) -> ContactForces:
+        """The contact of a window, node by node, at the points where it acts; before the edge is crushed."""
+        nodes, c = out.contact_nodes, self.contact
+        height, lead = np.zeros((2, len(nodes)))
+        height[: len(c.nodes)], lead[: len(c.nodes)] = c.height, c.lead
+        at = self._motion.points(nodes, Lever(height, lead))
+        at[:, 1] += self._aside(nodes)
+        return ContactForces(nodes, at, out.contact_mean)
+
+    def _aside(self, nodes: IntArray) -> Array:
+        """How far the middle of their ice is from nodes along y, (n,) [m]."""
+        g, column = self._sheet.grid, nodes % self._sheet.grid.ny
+        return np.asarray(self.ice_y[column] - (g.y0 + column * g.d))
 
     def crush(self) -> None:
         """Takes the overlapped ice off the edge, and rows of which nothing is left out of the lattice."""

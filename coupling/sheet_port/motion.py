@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coupling.interface import Array, IntArray
+from lattice.contact import Lever, edge_displacement
 from lattice.floe import Floe
 from lattice.state import State
 
@@ -27,6 +28,14 @@ class Motion:
     def position(self, nodes: IntArray) -> Array:
         """Positions of nodes now, (n, 3) [m]."""
         return self._place(nodes, self.sheet.state, self.t)
+
+    def points(self, nodes: IntArray, lever: Lever) -> Array:
+        """Positions of points at the end of levers on nodes now, (n, 3) [m]."""
+        x, y = self.sheet.grid.xy[nodes].T
+        at_rest = np.column_stack(
+            (x - self.setback + self.velocity * self.t + lever.lead, y, self.z_mid + lever.height)
+        )
+        return at_rest + edge_displacement(self.sheet.state, nodes, lever)
 
     def velocities(self, nodes: IntArray) -> Array:
         """Velocities of nodes now, (n, 3) [m/s]."""

@@ -78,6 +78,7 @@ class SheetPort:
         load = -out.contact_mean.sum(axis=0)
         self.motion.t = (t_ns + window_ns) / NS
         self.power = self._power(rubble)
+        contact = self.front.forces(out)
         self.front.crush()
         events = self.watch.window(out, parts, self._left, load, rubble_load)
         r = out.reaction
@@ -88,7 +89,7 @@ class SheetPort:
             "held": r.held,
             "staggering": r.applied.get("rubble", (0.0, 0.0)),
         }
-        return SheetReport(load, [f for f, _ in self._left], events, budget)
+        return SheetReport(load, [f for f, _ in self._left], events, budget, contact)
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""

@@ -54,11 +54,12 @@ class Window:
         """Mean displacement over a window of ``dt`` [s], with the velocities of its start."""
         return State(self.u / dt, self.q / dt, self.start.u_dot, self.start.q_dot)
 
-    def contact_mean(self, dt: float, nodes: IntArray) -> Array:
-        """Mean contact force, (m, 3) [N]: on these nodes of the edge, then on others that have had any."""
+    def contact_mean(self, dt: float, nodes: IntArray) -> tuple[Array, IntArray]:
+        """Mean contact force (m, 3) [N] and its nodes (m,): these of the edge, then others that have had any."""
         mean = self.impulse / dt
         left = np.setdiff1d(np.flatnonzero(mean.any(axis=1)), nodes)
-        return np.asarray(mean[np.concatenate((nodes, left))])
+        touched = np.concatenate((nodes, left))
+        return np.asarray(mean[touched]), touched
 
     def applied(self, dt: float) -> Applied:
         """Mean loads."""

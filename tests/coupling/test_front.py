@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from coupling.contact import CONTACTS, ContactLaw
+from coupling.interface import SheetForces
 from coupling.sheet_port import SheetPort
 from coupling.structure import plane_slope
 from lattice.grid import Grid
@@ -60,3 +61,21 @@ def test_the_force_turns_the_node_by_its_lever(contact):
     assert c.lead == pytest.approx(D / 2)
     assert work == pytest.approx(1e-3 * (c.height * force[:, 0] - D / 2 * force[:, 2]).sum(), rel=1e-9)
     assert work > 0.0  # the slope presses the front down, which turns it that way
+
+
+def test_the_contact_is_reported_node_by_node_where_it_acts():
+    """The forces add up to minus the load; each acts at the front of its node's ice, at the height of the contact."""
+    p = port("crushing", rows_gone=1)
+    report = p.advance(12_000_000_000, 50_000_000, SheetForces.none(), np.zeros(3))
+    c, s = report.contact, p.sheet.state
+    np.testing.assert_allclose(c.force.sum(axis=0), -report.load, rtol=1e-12)
+    assert report.load[0] > 0.0
+    np.testing.assert_array_equal(c.nodes, 9 * 7 + np.arange(7))
+    x, y = p.sheet.grid.xy[c.nodes].T.copy()
+    height = 0.5 * ICE.h
+    y[[0, -1]] += D / 4 * np.array([1.0, -1.0])  # ice of half a cell
+    np.testing.assert_allclose(c.position[:, 1], y + s.u[c.nodes, 1] + height * s.q[c.nodes, 2], rtol=0, atol=1e-12)
+    front = x + D / 2 + 0.1 * 12.05 + s.u[c.nodes, 0] + height * s.q[c.nodes, 1]
+    np.testing.assert_allclose(c.position[:, 0], front, rtol=1e-12)
+    z = ICE.freeboard + s.q[c.nodes, 0] - D / 2 * s.q[c.nodes, 1]
+    np.testing.assert_allclose(c.position[:, 2], z, rtol=1e-9)
