@@ -33,17 +33,19 @@ TERMS = ("dry_tops", "flooded_rubble", "pressed_sheet", "drag", "inertia", "held
 AXES = {"fx": 0, "fz": 1}  #: component of the load, its place in a pair
 
 
-def force_budget(load: Array, *participants: ForcePairs) -> dict[str, float]:
+def force_budget(load: Array, *participants: ForcePairs, loads: ForcePairs | None = None) -> dict[str, float]:
     """Terms ``fx_dry_tops`` ... ``fz_staggering`` and residuals ``fx_residual``, ``fz_residual`` [N].
 
-    ``load`` (3,) on the structure; each participant gives its own terms, those of the same name are added.
+    ``load`` (3,) on the structure; each participant gives its own terms, those of the same name are added. Other
+    ``loads`` on the sheet have a term each, under their names.
     """
     unknown = {name for terms in participants for name in terms} - set(TERMS)
     if unknown:
         raise ValueError(f"force budget: unknown terms {sorted(unknown)}; known are {', '.join(TERMS)}")
-    out = {}
+    out: dict[str, float] = {}
     for axis, k in AXES.items():
         terms = {name: float(sum(p[name][k] for p in participants if name in p)) for name in TERMS}
+        terms |= {name: pair[k] for name, pair in (loads or {}).items()}
         out.update({f"{axis}_{name}": value for name, value in terms.items()})
         out[f"{axis}_residual"] = float(load[2 * k]) - float(np.sum(list(terms.values())))
     return out

@@ -24,6 +24,7 @@ from coupling.interface import NS, SimulationError
 
 STORES = ("sheet_elastic", "sheet_foundation", "sheet_kinetic", "rubble_kinetic", "rubble_potential")
 SOURCES = ("drift_work", "thrust_work")
+LOAD_WORK = "_load_work"  #: ends the name of what a load on the sheet puts in, where there are loads
 LIMIT = 0.01  #: of the drift's work, or of `EnergyBalance.floor` while that is larger
 
 
@@ -31,7 +32,7 @@ def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[st
     """The terms of the balance from the books of both participants [J]; without rubble its terms are 0."""
     both = {**sheet, **rubble}
     terms = {name: both.get(name, 0.0) for name in SOURCES + STORES}
-    terms |= {name: value for name, value in both.items() if name.endswith("_loss")}
+    terms |= {name: value for name, value in both.items() if name.endswith(("_loss", LOAD_WORK))}
     terms["handover_elastic_loss"] = sheet["left_elastic"]
     terms["handover_potential_loss"] = sheet["left_foundation"] - rubble.get("born_potential", 0.0)
     terms["handover_kinetic_loss"] = sheet["left_kinetic"] - rubble.get("born_kinetic", 0.0)
@@ -42,7 +43,7 @@ def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[st
 def residual_of(terms: Mapping[str, float]) -> float:
     """What no term explains [J]."""
     spent = sum(value for name, value in terms.items() if name in STORES or name.endswith("_loss"))
-    return sum(terms[name] for name in SOURCES) - spent
+    return sum(value for name, value in terms.items() if name in SOURCES or name.endswith(LOAD_WORK)) - spent
 
 
 @dataclass
@@ -78,10 +79,10 @@ class EnergyBalance:
         if not self._start:
             return {}
         before, now = self.terms, terms_of(sheet, rubble)
-        self.terms = {name: value - self._start[name] for name, value in now.items()}
+        self.terms = {name: value - self._start.get(name, 0.0) for name, value in now.items()}
         self.work = max(self.work, abs(self.terms["drift_work"]))
         if not self.relative <= LIMIT:
-            change = {name: value - before[name] for name, value in self.terms.items()}
+            change = {name: value - before.get(name, 0.0) for name, value in self.terms.items()}
             worst = max(change, key=lambda name: abs(change[name]))
             raise SimulationError(
                 f"t = {t_ns / NS:.3f} s: the energy balance is off by {self.residual:.4g} J, {self.relative:.2%} of the"

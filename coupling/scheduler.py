@@ -67,7 +67,7 @@ class Scheduler:
         books |= self.rubble.momenta
         self.jump = bool(report.fragments)
         self._next = self._steering(self._next, self.power, self.jump)
-        budget = force_budget(load.sum(axis=0), report.budget, self.rubble.budget)
+        budget = force_budget(load.sum(axis=0), report.budget, self.rubble.budget, loads=report.loads)
         return Frame(
             self.t_ns,
             self.sheet.view(),

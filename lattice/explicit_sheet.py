@@ -21,7 +21,7 @@ from lattice.criteria.laws import combined_tension
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.easing import Easing
 from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import PointForces, Touch, point_forces, touch_at
+from lattice.explicit.forces import Touch, touch_at
 from lattice.explicit.layout import U_X
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release
@@ -86,70 +86,67 @@ class ExplicitSheet(Floe):
         """
         keep(loads, self.present)
         start, present, out = self.state, self.present.copy(), Outcome()
-        window = Window.empty(start, loads)
-        self._begin(t, loads, contact)
+        window = Window.begin(t, start, loads, contact, self.grid.ny)
+        self._begin(window)
         done = 0
         while done < self.engine.sub_steps:
-            marched = self._march(t, done, loads, contact, window)
+            marched = self._march(window, done)
             done += marched.steps
             if marched.failed or self._others:
-                self._break(t, done, loads, contact, out, release)
+                self._break(window, done, out, release)
             if self._easing.any and not marched.failed:
                 self._ease()
-        self._end(t + self.dt, loads, contact, out)
-        out.contact_mean, out.contact_nodes = window.contact_mean(self.dt, contact.nodes)
+        self._end(window, out)
         mean, applied = window.mean(self.dt), window.applied(self.dt)
         whole = Mean(mean, mean, 1.0, 0.0)
         out.reaction = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)
         return out
 
-    def _begin(self, t: float, loads: Loads, contact: EdgeContact) -> None:
-        e = self.engine
+    def _begin(self, w: Window) -> None:
+        e, contact = self.engine, w.contact
         self._set_cells()
-        touch = touch_at(t, contact, edge_displacement(self.state, contact.nodes, lever_of(contact)), self.grid.ny)
-        load = point_forces(loads, self.grid.ny)
-        e.start(self.state, self.present, (load, touch.at_once()))
-        self._book_half(-0.5, loads, load, touch)
+        touch = touch_at(w.t, contact, edge_displacement(self.state, contact.nodes, lever_of(contact)), self.grid.ny)
+        e.start(self.state, self.present, (w.load, touch.at_once()))
+        self._book_half(-0.5, w, touch)
         self._ease()
 
-    def _march(self, t: float, done: int, loads: Loads, contact: EdgeContact, window: Window) -> Marched:
+    def _march(self, w: Window, done: int) -> Marched:
         """Sub-steps to the next evaluation of the contact, or to a failure."""
-        e, load = self.engine, point_forces(loads, self.grid.ny)
+        e, contact = self.engine, w.contact
         steps = min(self.block, e.sub_steps - done)
-        touch = e.touch(t + (done + 0.5 * steps) * e.dt, contact)
-        before = e.displacement()
-        holding, at = self._holding(), e.touching(contact)
-        out = e.march(steps, load, touch, self._lively)
+        touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
+        before, holding = e.displacement(), self._holding(w.load)
+        out = e.march(steps, w.load, touch, self._lively)
         time = out.steps * e.dt
-        window.note(time, before, e.displacement(), load, self.grid.ny, self.support.held)
-        window.impulse[contact.nodes] += time * out.contact
-        self._book(out, loads, load, contact, at)
-        self.energy.hold += 0.5 * time * (holding + self._holding())
+        w.note(time, before, e.displacement(), self.support.held)
+        w.impulse[contact.nodes] += time * out.contact
+        self._book(w, out, touch)
+        self.energy.hold += 0.5 * time * (holding + self._holding(w.load))
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > LIVELY * self.energy.stored
         return out
 
-    def _end(self, t: float, loads: Loads, contact: EdgeContact, out: Outcome) -> None:
-        touch, load = self.engine.touch(t, contact), point_forces(loads, self.grid.ny)
-        self.state = self.engine.state(self.state, self.present, (load, touch.at_once()))
-        self._book_half(0.5, loads, load, touch)
+    def _end(self, w: Window, out: Outcome) -> None:
+        touch = self.engine.touch(w.t + self.dt, w.contact)
+        self.state = self.engine.state(self.state, self.present, (w.load, touch.at_once()))
+        self._book_half(0.5, w, touch)
         self.utilisation = self._utilisation(self.state)
         self.energy.measure(self.state, self.live_cells, self.present)
         self.energy.scheme = -self.engine.ripple
+        out.contact_mean, out.contact_nodes = w.contact_mean(self.dt)
         out.contact_end, out.parts = touch.force, self.parts
 
     # ---- failure -----------------------------------------------------------------------------------------------
 
-    def _break(self, t: float, done: int, loads: Loads, contact: EdgeContact, out: Outcome, release: Release) -> None:
+    def _break(self, w: Window, done: int, out: Outcome, release: Release) -> None:
         """Takes out the cells that reached their limit in the last sub-step, in the order in which they did."""
-        e, now = self.engine, t + done * self.engine.dt
+        e, now = self.engine, w.t + done * self.engine.dt
         cells, share = self._overloaded()
         if not len(cells):
             return
-        touch, load = e.touch(now, contact), point_forces(loads, self.grid.ny)
-        ended, half = self._at(0.0), self._at(0.5)
-        self.state = e.state(self.state, self.present, (load, touch.at_once()))
+        touch, ended, half = e.touch(now, w.contact), self._at(0.0), self._at(0.5)
+        self.state = e.state(self.state, self.present, (w.load, touch.at_once()))
         if out.failure is None:
             out.failure = (now - (1.0 - share[0]) * e.dt, touch.force)
         causes = self.judge.causes(ended.u, ended.q, self._eased(), cells)
@@ -157,7 +154,7 @@ class ExplicitSheet(Floe):
         self.failure_times += (now - (1.0 - share) * e.dt).tolist()
         self.fail(cells.tolist(), causes, half, out)  # with x(n) . K x(n-1) / 2, what leapfrog loses
         self._release_loose(out, release)
-        keep(loads, self.present)
+        w.keep(self.present)
         self._ease()
 
     def _overloaded(self) -> tuple[IntArray, Array]:
@@ -195,34 +192,34 @@ class ExplicitSheet(Floe):
 
     # ---- energy ------------------------------------------------------------------------------------------------
 
-    def _holding(self) -> float:
-        """Force along x at the held edge now [N]."""
+    def _holding(self, load: PointForces) -> float:
+        """Force along x at the held edge now, less what loads bring to it at once [N]."""
         u, _ = self.engine.displacement(-self.engine.alpha / self.engine.dt)  # x + alpha v
-        return self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
+        springs = self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
+        on_held = self.support.held[load.row * self.grid.ny + load.column]
+        return springs - float(load.force[on_held, U_X].sum())
 
-    def _book(self, out: Marched, loads: Loads, load: PointForces, contact: EdgeContact, at: Array) -> None:
-        """Books sub-steps before which the points of the contact were ``at`` (m, 3) [m]."""
+    def _book(self, w: Window, out: Marched, touch: Touch) -> None:
+        """Books sub-steps that have begun with the points of the contact where ``touch`` is linear about."""
         books, time = self.energy, out.steps * self.engine.dt
-        after = self.engine.touching(contact)
+        after = self.engine.touching(w.contact)
         books.touch.work += out.contact_work
         books.touch.push += time * float(out.contact[:, 0].sum())
-        books.rub.add(time, books.friction_of(after, out.contact), (after - at) / time)
-        for k, each in enumerate(loads):
-            of = slice(load.first[k], load.first[k + 1])
-            book = books.load(each.name)
-            book.work += float(out.work[k])
-            book.push += time * float(load.force[of, U_X].sum())
+        books.rub.add(time, books.friction_of(after, out.contact), (after - touch.at) / time)
+        for (name, of), work in zip(w.by_name(), out.work.tolist(), strict=True):
+            book = books.load(name)
+            book.work += work
+            book.push += time * float(w.load.force[of, U_X].sum())
         books.damping += out.loss
 
-    def _book_half(self, part: float, loads: Loads, load: PointForces, touch: Touch) -> None:
+    def _book_half(self, part: float, w: Window, touch: Touch) -> None:
         """Work in the half sub-step by which the velocities of the march lie before the ends of a window."""
         v, time = np.hstack((self.state.u_dot, self.state.q_dot)), part * self.engine.dt
         f = touch.at_once()
-        self.energy.touch.add(time, f.force, v[f.row * self.grid.ny + f.column])
-        nodes = load.row * self.grid.ny + load.column
-        for k, each in enumerate(loads):
-            of = slice(load.first[k], load.first[k + 1])
-            self.energy.load(each.name).add(time, load.force[of], v[nodes[of]])
+        self.energy.touch.add(time, f.force, v[f.row * w.columns + f.column])
+        nodes = w.load.row * w.columns + w.load.column
+        for name, of in w.by_name():
+            self.energy.load(name).add(time, w.load.force[of], v[nodes[of]])
 
 
 def _apart(cells: IntArray, columns: int) -> IntArray:

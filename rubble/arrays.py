@@ -6,6 +6,7 @@ numbers of a row stand side by side in memory, as pymunk's callbacks need it.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,11 @@ def rows(records: Records, first: str | None = None, count: int | None = None) -
     offset = int(dtype.fields[names[start]][1]) if dtype.fields else 0
     shape, strides = (len(records), width), (records.strides[0], 8)
     return np.ndarray(shape, np.float64, records, offset, strides) if len(records) else np.zeros(shape)
+
+
+def gathered(tables: Iterable[Records], dtype: np.dtype[np.void]) -> Array:
+    """The numbers (n, fields) of tables of float64 fields, one below the other."""
+    return np.concatenate([np.zeros((0, len(dtype.names or ()))), *(rows(t) for t in tables)])
 
 
 def filled(dtype: np.dtype[np.void], data: object) -> Records:

@@ -78,33 +78,33 @@ class Handlers:
     def __init__(self, space: Any, physics: RubblePhysics, faces: Records, y: float, reader: ContactReader) -> None:
         """``faces``: `cut.Cut.bearings` of the section y."""
         self.structure, self._ice = law_of(physics.mu_structure, y), law_of(physics.mu_ice_ice)
-        self._among_ice, self._on_structure = np.zeros(1, TABLES), np.zeros(1, TABLES)
         self.faces, self._between_ice = faces, _in_plane()
-        for tables, law, looks in (
-            (self._among_ice, self._ice, self._between_ice),
-            (self._on_structure, self.structure, faces),
+        self._tables = np.zeros(2, TABLES)  #: a row for each of the laws
+        self._tables["list"] = reader.list.ctypes.data
+        for name, offset in reader.layout._asdict().items():
+            self._tables[name] = offset
+        for row, law, looks, kinds in (
+            (0, self._ice, self._between_ice, (ICE, SHEET)),
+            (1, self.structure, faces, (STRUCTURE,)),
         ):
-            tables["list"], tables["law"] = reader.list.ctypes.data, law.ctypes.data
-            tables["faces"], tables["face_count"] = looks.ctypes.data, len(looks)
-            for name, offset in reader.layout._asdict().items():
-                tables[name] = offset
-        for kind, tables in ((ICE, self._among_ice), (SHEET, self._among_ice), (STRUCTURE, self._on_structure)):
-            law, looks = (self.structure, faces) if kind == STRUCTURE else (self._ice, self._between_ice)
+            tables = self._tables[row : row + 1]
+            tables["law"], tables["faces"], tables["face_count"] = law.ctypes.data, looks.ctypes.data, len(looks)
             constant = law["mu"][0] >= 0.0 and not (looks["constant"].any() or looks["radial"].any())
-            handler = lib.cpSpaceAddCollisionHandler(space._space, ICE, kind)
             before = _set_constant if constant else _set_friction
-            handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", before.address)
-            handler.postSolveFunc = ffi.cast("cpCollisionPostSolveFunc", note_pair.address)
-            handler.userData = ffi.cast("void *", tables.ctypes.data)
+            for kind in kinds:
+                handler = lib.cpSpaceAddCollisionHandler(space._space, ICE, kind)
+                handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", before.address)
+                handler.postSolveFunc = ffi.cast("cpCollisionPostSolveFunc", note_pair.address)
+                handler.userData = ffi.cast("void *", tables.ctypes.data)
 
     def watch(self, bodies: Bodies, slots: Slots, lateral: Records) -> None:
         """Where the callbacks find the motion of the bodies. The caller keeps the arrays."""
-        for tables in (self._among_ice, self._on_structure):
-            tables["places"], tables["address"] = len(slots.address), slots.address.ctypes.data
-            tables["slot"] = slots.slot.ctypes.data
-            tables["bodies"], tables["state"] = len(bodies.state), bodies.state.ctypes.data
-            tables["sheet_row"], tables["blocks"] = bodies.blocks, bodies.blocks
-            tables["lateral"] = lateral.ctypes.data
+        tables = self._tables
+        tables["places"], tables["address"] = len(slots.address), slots.address.ctypes.data
+        tables["slot"] = slots.slot.ctypes.data
+        tables["bodies"], tables["state"] = len(bodies.state), bodies.state.ctypes.data
+        tables["sheet_row"], tables["blocks"] = bodies.blocks, bodies.blocks
+        tables["lateral"] = lateral.ctypes.data
 
 
 def _in_plane() -> Records:

@@ -38,12 +38,15 @@ class Resistance(NamedTuple):
     mu_ice: float  #: on other ice
     half_rho_cd: float  #: rho_w C_d / 2 [kg/m^3]
     feed: float  #: V above [m/s]
+    current: float = 0.0  #: velocity of the water along y [m/s]
 
 
 def resistance_of(physics: RubblePhysics, window: float) -> Resistance:
     """Of a scenario in a window [s]."""
     mu = MU_SLIDING if physics.mu_ice_ice == RATE_DEPENDENT else float(physics.mu_ice_ice)
-    return Resistance(window, mu, physics.rho_w / 2 * physics.form_drag, float(physics.feed_speed))
+    return Resistance(
+        window, mu, physics.rho_w / 2 * physics.form_drag, float(physics.feed_speed), float(physics.current[1])
+    )
 
 
 @compiled(nogil=True)
@@ -67,11 +70,13 @@ def move_laterally(
         j, row, own, force, m = impulses[i], state[i], lateral[i], load[i], mass[i]
         force.x, force.y, force.z = j.structure_x / dt, -j.lateral / dt, j.structure_z / dt
         free = own.v_y + j.lateral / m
-        if free == 0.0:
+        if free == 0.0 and by.current == 0.0:
             continue
         on_face = free * j.grip_slip / j.grip if j.grip > 0.0 else free  # slip v_y / p on the structure
         slip = np.hypot(row.v_x, row.v_z)
-        grip, rub = j.grip / np.hypot(on_face, slip), by.mu_ice * j.ice / np.hypot(free, slip)
+        grip, rub = 0.0, 0.0
+        if free != 0.0:
+            grip, rub = j.grip / np.hypot(on_face, slip), by.mu_ice * j.ice / np.hypot(free, slip)
         v = free * max(0.0, 1.0 - (grip + rub) / m)
         sums.pushed += 0.5 * m * (free * free - own.v_y**2)
         if grip + rub > 0.0:
@@ -86,7 +91,8 @@ def move_laterally(
             v = slower
         outline = place(corners[offset[i] : offset[i + 1]], row.x, row.z, row.angle, 0, 0)
         wet = area_moments(submerged(outline)).area
-        own.v_y = v / (1.0 + dt * by.half_rho_cd * wet * abs(v) / m)
+        through = v - by.current
+        own.v_y = by.current + through / (1.0 + dt * by.half_rho_cd * wet * abs(through) / m)
         own.y += dt * own.v_y
         sums.dragged += 0.5 * m * (v * v - own.v_y**2)
 

@@ -38,12 +38,16 @@ class RubblePhysics:
     filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
     backfill_level: float = 0.0  #: height of the water on the tops, <= 0 [m]
     contact_strength: float = inf  #: pressure at which a contact crushes [Pa]
+    current: tuple[float, float] = (0.0, 0.0)  #: velocity of the water along x and y [m/s]
     feed_speed: float = inf  #: with which ice comes against the structure; see `lateral` [m/s]
 
     def __post_init__(self) -> None:
         for f in fields(self):
             value = getattr(self, f.name)
-            if isinstance(value, str):
+            if isinstance(value, tuple):
+                if not all(isfinite(v) for v in value):
+                    raise ValueError(f"rubble.{f.name} is {value}; give two finite velocities")
+            elif isinstance(value, str):
                 self._check_word(f.name, value)
             elif f.name == "backfill_level":
                 if not (isfinite(value) and value <= 0):

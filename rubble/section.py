@@ -142,7 +142,8 @@ class Section:
         """Move on by whole sub-steps; sums of impulses start from zero."""
         sums, tables = self.sums, self.tables
         sums.start_window()
-        before, start = tables.moved @ rows(self.state, "v_x", 2), rows(self.state, "x", 3).copy()
+        velocity, pose = rows(self.state, "v_x", 2), rows(self.state, "x", 3)
+        before, start = tables.moved @ velocity, pose.copy()
         sums.dead_load = rows(tables.hulls.weight, "x", 2).sum(axis=0)
         if self.sheet is not None:
             self.sheet.impulse[:] = 0.0
@@ -151,9 +152,9 @@ class Section:
         done = 0
         while done < n_substeps:
             done += self._substeps(n_substeps - done)
-        sums.momentum_gain = tables.moved @ rows(self.state, "v_x", 2) - before
-        if rows(tables.thrust).any():
-            sums.thrust_work += float(np.vdot(rows(tables.thrust), rows(self.state, "x", 3) - start))
+        sums.momentum_gain = tables.moved @ velocity - before
+        if tables.thrust is not None:
+            sums.thrust_work += float(np.vdot(tables.thrust, pose - start))
         if self.physics.filling_rate > 0.0:
             for block, flooded in zip(self.blocks, tables.hulls.flooded.tolist(), strict=True):
                 block.flooded = flooded

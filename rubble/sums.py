@@ -47,7 +47,7 @@ class SectionSums:
     def start_window(self) -> None:
         """Sums over a window start from zero."""
         for table in (self.block, self.sheet, self.water_impulse, self._count):
-            table[:] = np.zeros(1, table.dtype)[0]
+            table.view(np.uint8).fill(0)  # all fields at once
 
     def make_room(self, pairs: int) -> None:
         """Room for all pairs of another sub-step, should all of them be overloaded."""

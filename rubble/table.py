@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rubble.arrays import Array, rows
-from rubble.bodies import STATE, Outlines, place_all
+from rubble.arrays import Array, filled, gathered, rows
+from rubble.bodies import LATERAL, LOAD, STATE, Outlines, place_all
 from rubble.section import Section
 
 
@@ -24,8 +24,8 @@ def columns(sections: Mapping[int, Section]) -> dict[str, NDArray[Any]]:
     blocks = [b for s in sections.values() for b in s.blocks]
     ids = np.array([b.id for b in blocks], np.int64)
     order = np.argsort(ids)
-    state = np.concatenate([np.zeros(0, STATE), *(s.state for s in sections.values())])[order]
-    y, v_y = np.array([(b.y, b.v_y) for b in blocks]).reshape(-1, 2)[order].T
+    state = filled(STATE, gathered((s.state for s in sections.values()), STATE)[order])
+    lateral = filled(LATERAL, gathered((s.tables.lateral for s in sections.values()), LATERAL)[order])
     number = np.repeat(np.array(list(sections), np.int64), [len(s.blocks) for s in sections.values()])
     outlines = _outlines(sections, order)
     return {
@@ -34,11 +34,11 @@ def columns(sections: Mapping[int, Section]) -> dict[str, NDArray[Any]]:
         "sliding": np.array([b.sliding for b in blocks], np.bool_)[order],
         "mass": np.array([b.mass for b in blocks], np.float64)[order],
         "width": np.array([b.prism.width for b in blocks], np.float64)[order],
-        "position": np.stack([state["x"], y, state["z"]], -1),
+        "position": np.stack([state["x"], lateral["y"], state["z"]], -1),
         "angle": state["angle"].copy(),
-        "velocity": np.stack([state["v_x"], v_y, state["v_z"]], -1),
+        "velocity": np.stack([state["v_x"], lateral["v_y"], state["v_z"]], -1),
         "omega": state["omega"].copy(),
-        "load": np.concatenate([np.zeros((0, 3)), *(rows(s.tables.load) for s in sections.values())])[order],
+        "load": gathered((s.tables.load for s in sections.values()), LOAD)[order],
         "outline": place_all(outlines, state),
         "offset": outlines.offset,
     }

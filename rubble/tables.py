@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pymunk
 
-from rubble.arrays import Array, Records, filled, rows
+from rubble.arrays import Array, Records, filled, gathered
 from rubble.block import Block
 from rubble.bodies import FORCE, LATERAL, LOAD, STATE, Bodies, Outlines, read_bodies
 from rubble.overload import Strength
@@ -33,7 +33,7 @@ class Tables:
     strength: Strength
     moved: Array  #: (n,) mass with added mass [kg]
     mass: Array  #: (n,) true mass [kg]
-    thrust: Records  #: (n,) FORCE: constant force beside the weight
+    thrust: Array | None  #: (n, 3) constant force and moment beside the weight, if there is any [N, N, N m]
     lateral: Records  #: (n,) LATERAL; the blocks hold its rows
     load: Records  #: (n,) LOAD: mean force on the structure over the last window [N]
     axes: Records  #: (n,) AXIS
@@ -59,8 +59,8 @@ def lay_out(blocks: Sequence[Block], sheet: pymunk.Body | None, still: pymunk.Bo
         strength=_strength(blocks, physics),
         moved=np.array([b.body.mass for b in blocks], np.float64),
         mass=np.array([b.mass for b in blocks], np.float64),
-        thrust=filled(FORCE, [b.thrust for b in blocks]),
-        lateral=filled(LATERAL, [(b.y, b.v_y) for b in blocks]),
+        thrust=np.array([b.thrust for b in blocks]) if any(any(b.thrust) for b in blocks) else None,
+        lateral=filled(LATERAL, [b.lateral.tolist() for b in blocks]),
         load=filled(LOAD, [b.load.tolist() for b in blocks]),
         axes=_axes(blocks, physics.thickness),
         status=status,
@@ -78,9 +78,9 @@ def _bodies(blocks: Sequence[Block], sheet: pymunk.Body | None) -> Bodies:
 
 
 def _hulls(blocks: Sequence[Block], g: float) -> Hulls:
-    edges = [rows(b.prism.edges) for b in blocks]
+    edges = [b.prism.edges for b in blocks]
     return Hulls(
-        edges=filled(EDGE, np.concatenate(edges) if edges else []),
+        edges=filled(EDGE, gathered(edges, EDGE)),
         offset=np.cumsum([0, *map(len, edges)], dtype=np.int64),
         weight=filled(FORCE, [(b.thrust[0], b.thrust[1] - b.mass * g, b.thrust[2]) for b in blocks]),
         flooded=np.array([b.flooded for b in blocks], np.float64),

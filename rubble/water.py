@@ -45,6 +45,7 @@ class Water(NamedTuple):
     ahead: float  #: time by which the pose is advanced: the sub-step [s]
     level: float  #: height of the water on the tops, <= 0 [m]
     filling_rate: float  #: part of the head on a wet top that comes per second [1/s]
+    current: float = 0.0  #: velocity of the water along x [m/s]
 
 
 class Hulls(NamedTuple):
@@ -122,6 +123,7 @@ def water_of(physics: RubblePhysics) -> Water:
         ahead=float(physics.substep),
         level=float(physics.backfill_level),
         filling_rate=float(physics.filling_rate),
+        current=float(physics.current[0]),
     )
 
 
@@ -184,7 +186,8 @@ def block_force(edges: Records, start: int, end: int, water: Water, flooded: flo
     om = row.omega
     z, angle = row.z + water.ahead * row.v_z, row.angle + water.ahead * om
     c, s = np.cos(angle), np.sin(angle)
-    pose = Pose(z, c, s, row.v_x, row.v_z, c * row.v_x + s * row.v_z, c * row.v_z - s * row.v_x, om)
+    v_x = row.v_x - water.current  # drag is that of the motion through the water
+    pose = Pose(z, c, s, row.v_x, row.v_z, c * v_x + s * row.v_z, c * row.v_z - s * v_x, om)
     fx, fz, moment, power, lack, lowest = 0.0, 0.0, 0.0, 0.0, 0.0, np.inf
     wet_x, wet_z, drag_x, drag_z, turn = 0.0, 0.0, 0.0, 0.0, 0.0
     full_x, full_z, dry_x, dry_z = 0.0, 0.0, 0.0, 0.0
@@ -207,6 +210,7 @@ def block_force(edges: Records, start: int, end: int, water: Water, flooded: flo
     full_x, full_z = full_x + c * wet_x - s * wet_z, full_z + s * wet_x + c * wet_z
     drag_x, drag_z = c * drag_x - s * drag_z, s * drag_x + c * drag_z
     fx, fz = c * fx - s * fz, s * fx + c * fz
+    power += drag_x * water.current
     return WaterForce(fx, fz, moment, power, lack, lowest, full_x, full_z, turn, dry_x, dry_z, drag_x, drag_z)
 
 

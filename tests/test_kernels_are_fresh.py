@@ -59,24 +59,37 @@ def test_with_numbas_own_cache_it_is_not(tmp_path):
     assert run(package) == 20.0
 
 
-def test_an_edit_in_a_copy_of_the_rubble_reaches_the_kernels_that_call_it(tmp_path):
-    """`crushing._cut_depth` calls `geometry.moments` of another file through no file of its own that changes."""
-    shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
-    geometry = tmp_path / "rubble" / "geometry.py"
-    code = (
-        "import numpy as np; from rubble.geometry import submerged; "
-        "print(submerged(np.array([[0., -1.], [1., -1.], [1., 1.], [0., 1.]]))[:, 1].max())"
-    )
+#: a block that falls through the air for ten sub-steps; what the kick of its weight adds beside the work along its way
+FALL = """
+import numpy as np
+from rubble.block import Slab
+from rubble.energy import energy_terms
+from rubble.layer import RubbleLayer
+from rubble.physics import RubblePhysics
 
-    def top() -> float:
-        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+layer = RubbleLayer(RubblePhysics(rho_w=1e-9), 1.0)
+box = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+layer.add_block(0, Slab(box, np.array([0.0, 1.0]), np.ones(1), 900.0))
+layer.advance(10)
+print(energy_terms(layer)["stepping_loss"])
+"""
+
+
+def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it(tmp_path):
+    """`stepping.advance_substeps`, unchanged, calls `losses.kick`: m (g dt)^2 / 2 per sub-step, then three times it."""
+    shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
+    losses = tmp_path / "rubble" / "losses.py"
+
+    def stepping() -> float:
+        done = subprocess.run([sys.executable, "-c", FALL], cwd=tmp_path, capture_output=True, text=True, check=True)
         return float(done.stdout)
 
-    assert top() == 0.0
-    text = geometry.read_text()
-    assert "clip(polygon, 0.0, 1.0, 0.0)" in text
-    geometry.write_text(text.replace("clip(polygon, 0.0, 1.0, 0.0)", "clip(polygon, 0.0, 1.0, 0.5)"))
-    assert top() == 0.5
+    gain = 10 * (9.81 * 0.005) ** 2 / 2 * 900.0
+    assert stepping() == pytest.approx(-gain, rel=1e-9)
+    text = losses.read_text()
+    assert "0.5 * jz * dz" in text
+    losses.write_text(text.replace("0.5 * jz * dz", "1.5 * jz * dz"))
+    assert stepping() == pytest.approx(-3.0 * gain, rel=1e-9)
 
 
 @pytest.mark.parametrize("package", COPIES)

@@ -29,6 +29,7 @@ Ownership: a participant owns the arrays that it hands out unless a method says 
 
 from coupling.interface.exchange import ForcePairs, Restore, SheetForces
 from coupling.interface.frame import Frame
+from coupling.interface.load import Load, SheetMotion
 from coupling.interface.rubble import BlockTable, HandOver, RubbleParticipant
 from coupling.interface.sheet import (
     ContactForces,
@@ -55,11 +56,13 @@ __all__ = [
     "Frame",
     "HandOver",
     "IntArray",
+    "Load",
     "Phase",
     "Restore",
     "RubbleParticipant",
     "SheetEdge",
     "SheetForces",
+    "SheetMotion",
     "SheetParticipant",
     "SheetReport",
     "SheetView",

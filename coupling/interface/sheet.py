@@ -109,6 +109,7 @@ class SheetReport:
     fragments: list[Fragment] = field(default_factory=list)  #: that have left the lattice, in order
     events: list[Event] = field(default_factory=list)
     budget: ForcePairs = field(default_factory=dict)  #: what carries the sheet, see `coupling.budget`
+    loads: ForcePairs = field(default_factory=dict)  #: mean force of each `Load` on the sheet, by its name
     contact: ContactForces = field(default_factory=ContactForces.none)  #: the load, where it acts
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from coupling.energy import LOAD_WORK
 from lattice.energy import EnergyBooks
+
+RUBBLE = "rubble"  #: name of the rubble's forces among the loads on the lattice
 
 
 def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
@@ -15,7 +18,7 @@ def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
     crushed = e.crushed.elastic + e.crushed.foundation + e.crushed.kinetic_at(drift)
     return {
         "drift_work": drift * e.hold,
-        "received_work": e.received_at(drift),
+        "received_work": e.load(RUBBLE).at(drift),
         "sheet_elastic": e.now.elastic,
         "sheet_foundation": e.now.foundation,
         "sheet_kinetic": e.now.kinetic_at(drift),
@@ -31,4 +34,5 @@ def energy_terms(e: EnergyBooks, drift: float) -> dict[str, float]:
         "contact_work": e.contact,
         "rubble_work": e.received,
         "sheet_energy_residual": e.residual,
+        **{name + LOAD_WORK: work.at(drift) for name, work in e.loads.items() if name != RUBBLE},
     }

@@ -14,15 +14,17 @@ from coupling.interface import (
     Array,
     Fragment,
     IntArray,
+    Load,
     Restore,
     SheetEdge,
     SheetForces,
+    SheetMotion,
     SheetReport,
     SheetView,
     SimulationError,
     Structure,
 )
-from coupling.sheet_port.energy import energy_terms
+from coupling.sheet_port.energy import RUBBLE, energy_terms
 from coupling.sheet_port.fragments import fragment
 from coupling.sheet_port.front import Front
 from coupling.sheet_port.motion import Motion
@@ -46,10 +48,14 @@ class SheetPort:
         velocity: float,
         columns_per_section: int = 1,
         contact: type[OverlapContact] = OverlapContact,
+        loads: Sequence[Load] = (),
     ):
-        """``velocity`` of the drift [m/s]; ``contact`` makes the contact of the edge from the ``law``."""
+        """``velocity`` of the drift [m/s]; ``contact`` makes the contact of the edge from the ``law``.
+
+        ``loads`` act on the sheet beside structure and rubble, each under a name of its own.
+        """
         ice = sheet.ice
-        self.sheet = sheet
+        self.sheet, self.loads = sheet, tuple(loads)
         self.contact = contact(structure, law, velocity, ice.h, ice.freeboard)
         self.motion = Motion(sheet, velocity)
         self.front = Front(sheet, self.motion, structure, self.contact)
@@ -72,7 +78,7 @@ class SheetPort:
         self.sheet.set_window(window_ns / NS)
         parts = self.sheet.parts
         try:
-            out = self.sheet.advance(t, self._loads(rubble), self.contact, self._release)
+            out = self.sheet.advance(t, [self._rubble(rubble), *self._others(t)], self.contact, self._release)
         except (StepError, FloatingPointError) as error:
             raise SimulationError(f"t = {t:.3f} s: {error}") from error
         load = -out.contact_mean.sum(axis=0)
@@ -87,9 +93,10 @@ class SheetPort:
             "drag": r.drag,
             "inertia": r.inertia,
             "held": r.held,
-            "staggering": r.applied.get("rubble", (0.0, 0.0)),
+            "staggering": r.applied.get(RUBBLE, (0.0, 0.0)),
         }
-        return SheetReport(load, [f for f, _ in self._left], events, budget, contact)
+        others = {name: pair for name, pair in r.applied.items() if name != RUBBLE}
+        return SheetReport(load, [f for f, _ in self._left], events, budget, others, contact)
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""
@@ -101,12 +108,26 @@ class SheetPort:
         )
         self.front.renew()
 
-    def _loads(self, rubble: SheetForces) -> list[NodeLoad]:
-        """The external forces on the lattice."""
+    def _rubble(self, rubble: SheetForces) -> NodeLoad:
+        """The rubble's forces on all nodes."""
         n = self.sheet.grid.nodes
         force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
         force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
-        return [NodeLoad("rubble", force_u, force_q)]
+        return NodeLoad(RUBBLE, force_u, force_q)
+
+    def _others(self, t: float) -> list[NodeLoad]:
+        """The other loads in the coming window."""
+        if not self.loads:
+            return []
+        nodes = np.arange(self.sheet.grid.nodes)
+        where, velocity = self.motion.position(nodes), self.motion.velocities(nodes)
+        sheet = SheetMotion(where, velocity, self.sheet.grid.area, self.sheet.present)
+        out = []
+        for load in self.loads:
+            force = load.on_sheet(t, sheet)
+            force_q = np.column_stack((force[:, 2], np.zeros((len(nodes), 2))))
+            out.append(NodeLoad(load.name, force[:, :2].copy(), force_q))
+        return out
 
     def _power(self, rubble: SheetForces) -> float:
         """Power of the forces on the nodes that are still in the lattice, by their displacement in the window [W]."""
@@ -117,7 +138,7 @@ class SheetPort:
     def rest_under(self, rubble: SheetForces) -> None:
         """Starts the run in equilibrium with rubble that lies under the sheet, its edge just touching the structure."""
         try:
-            self.sheet.rest_under(self._loads(rubble))
+            self.sheet.rest_under([self._rubble(rubble)])
         except StepError as error:
             raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
         self.front.set_back()

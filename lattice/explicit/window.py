@@ -1,25 +1,31 @@
-"""Integrals over the blocks of sub-steps of one window."""
+"""One window of the explicit engine: what acts in it, and integrals over its blocks of sub-steps."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from lattice.explicit.forces import PointForces
+from lattice.contact import EdgeContact
+from lattice.explicit.forces import PointForces, point_forces
 from lattice.explicit.layout import U_X, W
-from lattice.grid import Array, BoolArray, IntArray
-from lattice.loads import Loads
+from lattice.grid import Array, BoolArray
+from lattice.loads import Loads, keep
 from lattice.reaction import Applied
 from lattice.state import State
 
 
 @dataclass
 class Window:
-    """Running integrals over time."""
+    """What acts, and running integrals over time."""
 
+    t: float  #: at which it begins [s]
     start: State
-    names: tuple[str, ...]  #: of the loads
+    loads: Loads
+    load: PointForces  #: the same on nodes that are still in the lattice
+    contact: EdgeContact
+    columns: int  #: nodes across
     impulse: Array  #: (n, 3) of the contact [N s]
     u: Array  #: (n, 2) of the displacement [m s]
     q: Array  #: (n, 3) [m s], [rad s]
@@ -27,26 +33,29 @@ class Window:
     held: float = 0.0  #: part of the impulse along x that acts on held nodes [N s]
 
     @classmethod
-    def empty(cls, start: State, loads: Loads) -> Window:
-        """A window that begins with this state."""
+    def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int) -> Window:
+        """A window that begins with this state; ``columns`` nodes across."""
         nothing = np.zeros((len(start.q), 3)), np.zeros_like(start.u), np.zeros_like(start.q)
-        return cls(start, tuple(load.name for load in loads), *nothing, np.zeros((len(loads), 2)))
+        load = point_forces(loads, columns)
+        return cls(t, start, loads, load, contact, columns, *nothing, np.zeros((len(loads), 2)))
 
-    def note(
-        self,
-        time: float,
-        before: tuple[Array, Array],
-        after: tuple[Array, Array],
-        load: PointForces,
-        columns: int,
-        held: BoolArray,
-    ) -> None:
+    def keep(self, present: BoolArray) -> None:
+        """Takes the loads off nodes that have left."""
+        keep(self.loads, present)
+        self.load = point_forces(self.loads, self.columns)
+
+    def by_name(self) -> Iterator[tuple[str, slice]]:
+        """Each load, and where its forces stand in ``load``."""
+        for k, each in enumerate(self.loads):
+            yield each.name, slice(self.load.first[k], self.load.first[k + 1])
+
+    def note(self, time: float, before: tuple[Array, Array], after: tuple[Array, Array], held: BoolArray) -> None:
         """Adds some sub-steps that last ``time`` [s], by the trapezoidal rule; ``held`` (nodes,) along x."""
+        load = self.load
         for total, old, new in zip((self.u, self.q), before, after, strict=True):
             total += 0.5 * time * (old + new)
-        on_held = held[load.row * columns + load.column]
-        for k in range(len(self.names)):
-            of = slice(load.first[k], load.first[k + 1])
+        on_held = held[load.row * self.columns + load.column]
+        for k, (_, of) in enumerate(self.by_name()):
             self.push[k] += time * np.array((load.force[of, U_X].sum(), load.force[of, W].sum()))
         self.held += time * float(load.force[on_held, U_X].sum())
 
@@ -54,9 +63,9 @@ class Window:
         """Mean displacement over a window of ``dt`` [s], with the velocities of its start."""
         return State(self.u / dt, self.q / dt, self.start.u_dot, self.start.q_dot)
 
-    def contact_mean(self, dt: float, nodes: IntArray) -> tuple[Array, IntArray]:
-        """Mean contact force (m, 3) [N] and its nodes (m,): these of the edge, then others that have had any."""
-        mean = self.impulse / dt
+    def contact_mean(self, dt: float) -> tuple[Array, IntArray]:
+        """Mean contact force (m, 3) [N] and its nodes (m,): those of the edge now, then others that have had any."""
+        mean, nodes = self.impulse / dt, self.contact.nodes
         left = np.setdiff1d(np.flatnonzero(mean.any(axis=1)), nodes)
         touched = np.concatenate((nodes, left))
         return np.asarray(mean[touched]), touched
@@ -64,4 +73,4 @@ class Window:
     def applied(self, dt: float) -> Applied:
         """Mean loads."""
         pairs = (self.push / dt).tolist()
-        return Applied({n: (x, z) for n, (x, z) in zip(self.names, pairs, strict=True)}, float(self.held / dt))
+        return Applied({n.name: (x, z) for n, (x, z) in zip(self.loads, pairs, strict=True)}, float(self.held / dt))

@@ -82,17 +82,17 @@ def dissect(grid: Grid, per_node: int) -> Dissection:
         node_place[of] = np.where(r < first[k + 1], r - first[k], sizes[k] + np.searchsorted(edges[k], r))
     w, m = sizes * per_node, np.array([len(e) for e in edges]) * per_node
     return Dissection(
-        _to_dof(nodes, per_node),
-        first * per_node,
-        _to_dof(np.concatenate(edges), per_node),
-        np.concatenate(([0], np.cumsum(m))),
-        np.array([c for _, c in fronts]),
-        cell_at,
-        cells,
-        _to_dof(node_place, per_node).reshape(cell_dof(grid, per_node).shape),
-        np.concatenate(([0], np.cumsum(w * (w + m)))),
-        deepest * per_node**2,
-        int((w + m).max()),
+        order=_to_dof(nodes, per_node),
+        first=first * per_node,
+        edge=_to_dof(np.concatenate(edges), per_node),
+        edge_at=np.concatenate(([0], np.cumsum(m))),
+        children=np.array([c for _, c in fronts]),
+        cell_at=cell_at,
+        cells=cells,
+        place=_to_dof(node_place, per_node).reshape(cell_dof(grid, per_node).shape),
+        panel_at=np.concatenate(([0], np.cumsum(w * (w + m)))),
+        stack=deepest * per_node**2,
+        widest=int((w + m).max()),
     )
 
 

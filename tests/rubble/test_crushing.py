@@ -82,3 +82,21 @@ def test_how_deep_a_corner_and_a_face_are_cut():
     assert depth == pytest.approx(0.5 * 1e5 / 1e5 * 0.05, rel=1e-6)  # 2 MN move 100 t by 25 mm in a window
     assert depth_for(flat.block(0), ahead, 1.0, 1e5, 0.05)[0] == pytest.approx(0.0, abs=1e-6)
     assert depth_for(flat.block(0), ahead, 10.0, 1e5, 0.05)[0] == np.inf
+
+
+@pytest.mark.parametrize("count", [70, 150])
+def test_every_overloaded_block_crushes_however_many_there_are(count):
+    """Blocks one above the other, each pressed on the wall with its corner, in one section and one window."""
+    physics = RubblePhysics(rho_i=900.0, rho_w=1e-9, g=0.0, thickness=H, contact_strength=STRENGTH)
+    wall = np.array([(0.0, -10.0), (10.0, -10.0), (10.0, 4.0 * count), (0.0, 4.0 * count)])
+    layer = RubbleLayer(physics, WIDTH, solids=lambda _y: plane([wall]))
+    half, ends = 1.0, np.array([-1.0, 1.0])
+    diamond = half * np.array([(-1.0, 0.0), (0.0, -1.0), (1.0, 0.0), (0.0, 1.0)])
+    for i in range(count):
+        layer.add_block(0, Slab(diamond + np.array([-half, 3.0 * i]), ends * half - half, np.array([WIDTH]), 900.0))
+        thrust(layer, i, FORCE)
+    before = layer.table().mass
+    layer.advance(10)
+    assert len(layer.section(0).overloads) == count
+    assert (layer.table().mass < before - 0.1).all()
+    assert layer.mass + layer.crushed.mass == pytest.approx(before.sum(), rel=1e-12)

@@ -1,0 +1,90 @@
+"""Faces that look out of the section's plane: force balance on them by hand, and where a contact looks for its face."""
+
+import numpy as np
+import pytest
+
+from rubble.arrays import filled
+from rubble.block import Slab
+from rubble.cut import FACE, Bearing, faceted, plane, revolved
+from rubble.friction import tilt
+from rubble.layer import RubbleLayer
+from rubble.physics import RubblePhysics
+from rubble.rig import lock_rotation, thrust
+
+WIDTH, H, PUSH = 2.0, 1.0, 2e4  # so that friction does not stop a block in a window
+LOWER, UPPER = np.radians(20.0), np.radians(-35.0)  #: horizontal bearings of the two facets of a wall
+BELOW = np.array([(0.0, -20.0), (5.0, -20.0), (5.0, 0.0), (0.0, 0.0)])
+ABOVE = BELOW + np.array([0.0, 20.0])
+
+
+def wall(_y):
+    """A vertical wall that looks to one side below z = 0 and to the other above it."""
+    return faceted([BELOW, ABOVE], lambda _x, z: Bearing(np.tan(LOWER if z < 0.0 else UPPER), 0.0))
+
+
+def pressed(mu, v_y, *, turns=False):
+    """Loads (2, 3) on the wall by a block below and one above, pressed on it with `PUSH` while they slip laterally."""
+    physics = RubblePhysics(rho_i=900.0, rho_w=1e-9, g=0.0, thickness=H, mu_structure=mu, form_drag=0.0, skin_drag=0.0)
+    layer = RubbleLayer(physics, WIDTH, solids=wall)
+    for z in (-10.0, 10.0):
+        box = np.array([(-2.0, z - 1.0), (0.0, z - 1.0), (0.0, z + 1.0), (-2.0, z + 1.0)])
+        number = layer.add_block(0, Slab(box, np.array([-2.0, 0.0]), np.array([WIDTH]), 900.0))
+        if not turns:
+            lock_rotation(layer, number)
+        thrust(layer, number, PUSH)
+    for _ in range(40):
+        for block in layer.blocks:
+            block.y, block.v_y = 0.0, v_y
+        layer.advance(10)
+    return layer, layer.load_on_structure
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.2])
+@pytest.mark.parametrize("v_y", [0.5, -0.5])
+def test_force_balance_on_a_facet(mu, v_y):
+    """Outward normal is n = -(cos psi, sin psi, 0), slip along t = (-sin psi, cos psi, 0) to the side of v_y.
+
+    On the structure act -N n and mu N t sign(v_y); the balance along x, ``N (cos psi - mu sin psi sign) = PUSH``, gives
+    N.
+    """
+    _, load = pressed(mu, v_y)
+    for (fx, fy, fz), psi in zip(load, (LOWER, UPPER), strict=True):
+        c, s, side = np.cos(psi), np.sin(psi), np.sign(v_y)
+        normal = PUSH / (c - mu * s * side)
+        assert fx == pytest.approx(PUSH, rel=1e-3)
+        assert fy == pytest.approx(normal * (s + mu * c * side), rel=2e-3)
+        assert abs(fz) < 1e-3 * PUSH
+
+
+def test_a_facet_that_looks_along_the_drift_pushes_nobody_aside():
+    assert plane([BELOW]).faces["constant"].any() == revolved([BELOW]).faces["constant"].any() == 0.0
+    _, load = pressed(0.0, 0.0)
+    assert load[:, 1] == pytest.approx(PUSH * np.tan([LOWER, UPPER]), rel=2e-3)
+
+
+def test_one_face_stands_for_all_of_the_same_bearing():
+    assert len(plane([BELOW, ABOVE]).bearings) == len(revolved([BELOW, ABOVE]).bearings) == 1
+    assert len(wall(0.0).bearings) == len(wall(0.0).faces) == 6
+    assert len(plane(()).bearings) == 1
+
+
+@pytest.mark.parametrize("psi", [0.0, 0.3, -0.9])
+@pytest.mark.parametrize("slope", [0.4, 1.5])
+def test_the_normal_of_a_facet_is_a_unit_vector_of_its_bearing(psi, slope):
+    n = np.array([-np.sin(slope) * np.cos(psi), -np.sin(slope) * np.sin(psi), -np.cos(slope)])
+    in_plane = n[[0, 2]] / np.hypot(n[0], n[2])
+    face = filled(FACE, [0.0, 0.0, 0.0, 1.0, np.tan(psi), 0.0])[0]
+    found = tilt(face, -7.0, float(in_plane[0]), 3.0, 4.0)
+    assert (found.p * in_plane[0], found.n_y, found.p * in_plane[1]) == pytest.approx(tuple(n), rel=1e-12)
+
+
+def test_where_a_block_presses_is_kept():
+    """The mean place of its contacts: on the wall, at the height of the block's middle; nan far from the wall."""
+    layer, _ = pressed(0.0, 0.0, turns=True)
+    layer.add_block(
+        0, Slab(np.array([(-9.0, 0.0), (-7.0, 0.0), (-7.0, 2.0)]), np.array([-9.0, -7.0]), np.ones(1), 900.0)
+    )
+    layer.advance(10)
+    centres = layer.contact_centres()
+    assert centres[:2] == pytest.approx(np.array([(0.0, -10.0), (0.0, 10.0)]), abs=0.02)
+    assert np.isnan(centres[2]).all()
