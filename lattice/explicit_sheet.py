@@ -21,7 +21,7 @@ from lattice.criteria.laws import combined_tension
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.easing import Easing
 from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import Touch, touch_at
+from lattice.explicit.forces import PointForces, Touch, touch_at
 from lattice.explicit.layout import U_X
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release

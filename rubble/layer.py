@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rubble import table
-from rubble.arrays import Array, BoolArray
+from rubble.arrays import Array
 from rubble.between import after_window
 from rubble.block import Block, Slab, energy_of, make_block
 from rubble.cut import Solids, open_water
@@ -75,8 +75,6 @@ class RubbleLayer:
         """Takes structure and threads from the layer of which this one is a copy."""
         self.solids, self.threads, self._pool = other.solids, other.threads, other._pool
 
-    # ---- sections ---------------------------------------------------------------------------------------------
-
     def section(self, key: int) -> Section:
         """The section with this number, made when first asked for."""
         if key not in self.sections:
@@ -92,8 +90,6 @@ class RubbleLayer:
     def key_at(self, y: float) -> int:
         """Number of the section that holds y."""
         return floor((y - self.origin) / self.pitch + 0.5)
-
-    # ---- blocks and sheet -------------------------------------------------------------------------------------
 
     def trim(self, polygon: Array, section: int) -> Array:
         """What is left of an outline (k, 2) outside the structure in a section, convex; (0, 2) if nothing is."""
@@ -152,8 +148,6 @@ class RubbleLayer:
         for section in self.sections.values():
             section.water = section.water._replace(form_drag=float(coefficient))
 
-    # ---- motion -----------------------------------------------------------------------------------------------
-
     def advance(self, n_substeps: int) -> None:
         """Move all blocks on by a window of whole sub-steps: sections, then what happens between two windows."""
         if n_substeps < 1:
@@ -171,7 +165,7 @@ class RubbleLayer:
             if all_inside(state, lateral, section.y, half, self.domain):
                 continue
             gone = ~self.domain.holds(state["x"], lateral["y"], state["z"])
-            off: BoolArray = gone | (np.abs(lateral["y"] - section.y) > half)
+            off = gone | (np.abs(lateral["y"] - section.y) > half)
             for block, out in [(section.blocks[i], gone[i]) for i in np.flatnonzero(off)]:
                 if out:
                     self._clear(section, block)
@@ -194,8 +188,6 @@ class RubbleLayer:
         self.cleared.append(block.id)
         self.gone.take(block.mass, block.momentum, sum(energy_of(block, self.physics)))
 
-    # ---- results ----------------------------------------------------------------------------------------------
-
     def columns(self) -> dict[str, NDArray[Any]]:
         """All blocks as arrays by name, in the order of their numbers; see `table.columns`."""
         return table.columns(self.sections)
@@ -211,14 +203,13 @@ class RubbleLayer:
 
     def load_of(self, *, sliding: bool) -> Array:
         """Sum of the mean forces of the blocks that slide, or of those that rotate (3,) [N]."""
-        phase = np.array([b.sliding for b in self.blocks], np.bool_)
-        total: Array = self.load_on_structure[phase == sliding].sum(axis=0)
-        return total
+        phase = np.array([b.sliding for b in self.blocks], np.bool_) == sliding
+        return np.asarray(self.load_on_structure[phase].sum(axis=0))
 
     def contact_centres(self) -> Array:
         """Where each block presses on the structure: mean x and z (n, 2) of its contacts, weighted with their impulse.
 
-        Over the last window, in the order of the table; nan for a block without contact [m].
+        Over the last window, in the order of the table; nan without contact [m].
         """
         return table.contact_centres(self.sections)
 

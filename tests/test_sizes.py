@@ -25,7 +25,6 @@ KNOWN: dict[str, set[str]] = {
     "rubble/arbiters.py": {"call Contact"},
     "rubble/contacts.py": {"call record"},
     "rubble/initial.py": {"call Pile"},
-    "rubble/layer.py": {"file"},
     "rubble/water.py": {"call WaterForce"},
 }
 SOURCES = sorted(file for package in PACKAGES for file in (ROOT / package).rglob("*.py"))

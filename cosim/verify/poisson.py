@@ -36,7 +36,8 @@ CONTRACTION = {"equations-matching": (0.32, 0.01), "hrennikoff": (0.25, 0.005)} 
 def contraction(ice: Ice, stiffness: str) -> float:
     """Contraction over elongation of one cell in uniaxial tension, Figure 3-2."""
     state = cell_in_stress(ice, STIFFNESS_SETS[stiffness](ice), np.array([1.0e5, 0.0]), 0.0)
-    return float(-state.strains.e22[0] / state.strains.e11[0])
+    strains = state.strains
+    return float(-strains.e22[0] / strains.e11[0])
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:

@@ -15,8 +15,8 @@ from lattice.floe import Floe
 NodeMotion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity in x and z (n, 2) of nodes
 Yield = tuple[tuple[float, float], tuple[float, float]]  #: stiffness [N/m] and inertia [kg] in x and z
 
-#: length of sheet behind its edge that the rubble meets [m]. Rubble lies in front of the structure: the campaign's
-#: 3000 m3 under 165 m of edge reach about 15 m back; blocks farther behind rise into open water under no sheet
+#: length of sheet behind its edge that the rubble meets [m]: the campaign's 3000 m3 of initial rubble reach 25 m back.
+#: What lies farther behind would rise into open water
 REACH = 30.0
 
 

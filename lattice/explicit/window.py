@@ -10,7 +10,7 @@ import numpy as np
 from lattice.contact import EdgeContact
 from lattice.explicit.forces import PointForces, point_forces
 from lattice.explicit.layout import U_X, W
-from lattice.grid import Array, BoolArray
+from lattice.grid import Array, BoolArray, IntArray
 from lattice.loads import Loads, keep
 from lattice.reaction import Applied
 from lattice.state import State

@@ -26,6 +26,10 @@ class Spring:
     def height(self):
         return np.zeros(len(self.nodes))
 
+    @property
+    def lead(self):
+        return np.zeros(len(self.nodes))
+
     def evaluate(self, t, y):
         force, tangent = np.zeros((len(y), 3)), np.zeros((len(y), 3, 3))
         force[:, 2] = self.k * (-self.rate * t**2 - y[:, 2])
