@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lattice.contact import Lever
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import CrackLaw, law_of
@@ -103,11 +102,11 @@ class BeamTest:
         spring = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2  # soft for the sub-step, stiff against the beam
         tangent = np.zeros((len(tip), 3, 3))
         tangent[:, 2, 2] = -spring
-        at_node = Lever(np.zeros(len(tip)), np.zeros(len(tip)))
+        here = np.zeros(len(tip))
         at, none, largest, mean, t = np.zeros((len(tip), 3)), np.zeros((len(tip), 3)), 0.0, 0.0, 0.0
         while t < 8.0 * e.window:
             at[:, 2] = -self.speed * (t + 0.5 * block * e.dt)
-            made = e.march(block, NOTHING, Touch(row, column, at_node, at, none, tangent), lively=False)
+            made = e.march(block, NOTHING, Touch(row, column, here, here, at, none, tangent), lively=False)
             t += made.steps * e.dt
             if made.failed:
                 self._begin()
@@ -129,12 +128,12 @@ class BeamTest:
         e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), np.ones(self.cut.grid.nodes, bool))
 
 
-def layer_strength(ice: Ice, law: CrackLaw, fracture_energy: float, beam: Beam, d: float) -> float:
+def layer_strength(ice: Ice, mu: float, fracture_energy: float, beam: Beam, d: float) -> float:
     """Strength of the layers with which the simulated beam breaks at its load [Pa]; cells of about ``d`` [m]."""
     wanted, sigma, cut = beam.stress(ice.h), beam.stress(ice.h) / 1.3, cut_beam(beam, d)
     for _ in range(TRIALS):
         trial = replace(ice, sigma_t=sigma, sigma_f=sigma, beam_test=None)
-        found = BeamTest(trial, law_of(trial, fracture_energy, law.mu, cut.grid.d), cut).strength()
+        found = BeamTest(trial, law_of(trial, fracture_energy, mu, cut.grid.d), cut).strength()
         if abs(found - wanted) <= CLOSE * wanted:
             return sigma
         sigma *= wanted / found
