@@ -5,14 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.cracks.cells import MOVED, elongations, evaluate, gradients, tangent_energy, turned, turned_back
+from lattice.cracks.cells import MOVED, WIDE, elongations, evaluate, gradients, tangent_energy, turned, turned_back
 
 
 @compiled(inline="always")
 def moved(k, my, y, plate, law, cracks):
     """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
     b, q, half, s = cracks.corner[k], 0.5 / plate.d, 0.5 * plate.h, cracks.seen
-    far = MOVED * law.e_0
+    wide = max(abs(s[0, k]) + half * abs(s[3, k]), abs(s[1, k]) + half * abs(s[4, k]))
+    far = MOVED * (law.e_0 + WIDE * wide)
     xx, xy, _ = gradients(b, my, q, y[0])
     yx, yy, _ = gradients(b, my, q, y[1])
     px, py, _ = gradients(b, my, q, y[3])
