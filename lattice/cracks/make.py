@@ -13,8 +13,6 @@ from lattice.ice import Ice
 from lattice.stiffness import Springs
 
 SCALING = 4.0  #: of the fast inertia in slow interaction: 1 instead of 4 moves the peak of the 165 m floe by 0.7 % [-]
-#: longest time between two evaluations of the contact in slow interaction: 2 and 10 ms differ by 0.1 % of the peak [s]
-CONTACT_TIME = 1e-2
 
 
 @dataclass(frozen=True)
@@ -40,5 +38,5 @@ def cracking_sheet(
     layers = replace(ice, sigma_t=strength, sigma_f=strength, beam_test=None)
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
     if not dynamic:
-        options = {"scaling": SCALING, "contact_time": CONTACT_TIME, **options}
+        options = {"scaling": SCALING, **options}
     return CrackingSheet(grid, layers, springs, window, law=law, **options)
