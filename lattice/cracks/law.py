@@ -165,4 +165,6 @@ def layer(eps_n: float, eps_t: float, gamma: float, damage: Array, crushed: Arra
                 cracking += 0.5 * G * moved * moved
             slip, rubbing, gg, tau = slip + moved, new * moved, 0.0, new
     stored = normal_energy(s_n, s_t, a_n, a_t, law) + 0.5 * tau * tau / G
-    return Layer(s_n, s_t, tau, nn, nt, tt, gg, slip, stored, cracking, crushing, rubbing)
+    return Layer(
+        s_n, s_t, tau, nn, nt, tt, gg, slip, stored=stored, cracking=cracking, crushing=crushing, rubbing=rubbing
+    )
