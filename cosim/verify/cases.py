@@ -34,6 +34,7 @@ from cosim.verify import (
     wedge,
 )
 from cosim.verify.case import CaseResult
+from cosim.verify.cracks import beam_test, friction, hinged_ring, thrust, wedge_beams
 from cosim.verify.settings import merged, parse
 
 CASES: dict[str, ModuleType] = {
@@ -56,6 +57,11 @@ CASES: dict[str, ModuleType] = {
     "pile": pile,
     "pusher": pusher,
     "mohr-plane": mohr_plane,
+    "crack-thrust": thrust,
+    "crack-friction": friction,
+    "beam-test": beam_test,
+    "wedge-beams": wedge_beams,
+    "hinged-ring": hinged_ring,
 }
 
 
