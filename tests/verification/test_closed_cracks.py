@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from cosim.verify import cases
-from cosim.verify.cracks import friction, hinged_ring, thrust, wedge_beams
+from cosim.verify.cracks import arch, centre_crack, friction, hinged_ring, thrust, wedge_beams
 
-CASES = ("crack-thrust", "crack-friction", "beam-test", "wedge-beams", "hinged-ring")
+CASES = ("crack-thrust", "crack-friction", "crack-arch", "beam-test", "wedge-beams", "hinged-ring", "centre-crack")
 
 
 def missed(result):
@@ -61,6 +61,33 @@ def test_a_segment_as_wide_at_its_hinge_as_at_its_rim_is_rejected(monkeypatch):
     assert missed(cases.run("hinged-ring", quick=True)[0])
 
 
+def test_an_arch_whose_hinges_bear_no_thrust_does_not_stand(monkeypatch):
+    """The wrong twin: cracks at both ends and midspan that carry nothing leave a mechanism."""
+    p = {**arch.PARAMETERS, "block": 6, "w": [0.05]}
+    standing = arch.lattice_arch(p, 4.0e6, 4.0).force[-1]
+    monkeypatch.setattr(arch.CrackingEngine, "begin", lambda *_: 0.0)
+    lying = arch.lattice_arch(p, 4.0e6, 4.0).force[-1]
+    assert standing > 1e6
+    assert abs(lying) < 0.02 * standing
+
+
+def test_small_rotations_leave_the_arch_its_arm():
+    """The force of the elastic arch goes on in proportion to w, past w = 0.42 h where a real one snaps through."""
+    p = {**arch.PARAMETERS, "w": [0.6]}
+    found = arch.lattice_arch(p, np.inf, 12.0)
+    half, whole = (np.interp(s * 0.6 * p["h"], found.w, found.force) for s in (0.5, 1.0))
+    assert whole == pytest.approx(2.0 * half, rel=0.05)
+
+
+def test_what_a_closed_crack_carries_is_the_same_on_two_meshes():
+    """And with sides that are not held in the plane the crack finds less thrust."""
+    p = {**centre_crack.PARAMETERS, "length": 100.0, "w": 0.2}
+    coarse, fine = (centre_crack.pushed(p, n, "closing").force[-5] for n in (20, 30))
+    assert coarse == pytest.approx(fine, rel=0.1)
+    free = centre_crack.pushed({**p, "sides": "free"}, 20, "closing").force[-5]
+    assert free < 0.99 * coarse
+
+
 def test_wedges_bear_in_proportion_to_their_angle_and_to_their_strength():
     p = {**wedge_beams.PARAMETERS, "d": 3.0}
     narrow, wide = (wedge_beams.loads_of_lattice(p, angle) for angle in (8.0, 16.0))
@@ -74,6 +101,8 @@ def test_wedges_bear_in_proportion_to_their_angle_and_to_their_strength():
     [
         ("crack-thrust", {"thrust": [1.5]}, "between 0 and 1"),
         ("crack-friction", {"amplitude": 1e-5}, "does not slip back"),
+        ("centre-crack", {"nodes": [41]}, "even numbers"),
+        ("centre-crack", {"sides": "loose"}, "held or free"),
     ],
 )
 def test_parameters_that_make_no_sense_get_one_line(case, settings, words):

@@ -65,11 +65,11 @@ def forces(p: dict[str, Any], L: float, E: float) -> tuple[float, float]:
     ice = Ice(E=E, nu=p["nu"], h=p["h"], rho_i=846.0, rho_w=1006.0)
     grid, piece, sheet = segment(p, L)
     springs, corners = hrennikoff(ice), grid.cell_nodes
-    whole: BoolArray = piece[corners].all(axis=1) | sheet[corners].all(axis=1)
-    hinge: BoolArray = ~whole & (piece | sheet)[corners].all(axis=1)
+    whole = piece[corners].all(axis=1) | sheet[corners].all(axis=1)
+    hinge = ~whole & (piece | sheet)[corners].all(axis=1)
     no_moment = replace(springs, G_r_axi=0.0, G_t_axi=0.0, G_dia=0.0)
-    through = assemble(grid, out_of_plane_springs(no_moment, grid.d), hinge)
-    K = assemble(grid, out_of_plane_springs(springs, grid.d), whole) + through
+    through = assemble(grid, out_of_plane_springs(no_moment, grid.d), np.asarray(hinge))
+    K = assemble(grid, out_of_plane_springs(springs, grid.d), np.asarray(whole)) + through
     water = np.zeros(3 * grid.nodes)
     water[::3] = np.where(piece | sheet, ice.k_f * grid.d**2, 0.0)
     held = 3 * np.flatnonzero(sheet & (grid.xy[:, 0] > grid.xy[:, 0].max() - 0.5 * grid.d))

@@ -2,8 +2,9 @@
 
 A section that is cracked through and turned open carries its thrust N in a crushed block at its edge, of depth
 N / sigma_c, so that M = N (h/2 - N / (2 sigma_c)): the rectangular stress block of a section without tension
-(EN 1992-1-1, 3.1.7; compressive membrane action: Rankin and Long 1997; ice sheets: Bazant and Li 1995). The layers of a lattice cell
-are set against it and against 81 layers of equal weight. The wrong twin has all its thrust at middle thickness.
+(EN 1992-1-1, 3.1.7; compressive membrane action: Rankin and Long 1997; ice sheets: Bazant and Li 1995). The layers of
+a lattice cell are set against it and against 81 layers of equal weight. The wrong twin has all its thrust at middle
+thickness.
 """
 
 from __future__ import annotations

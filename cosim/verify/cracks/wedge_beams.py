@@ -6,9 +6,9 @@ narrow free infinite wedge on an elastic foundation", CRREL research report 79; 
 psi, so is the load at which the largest bending stress reaches the strength. The ODE is solved by collocation.
 
 The lattice has the cells whose middle is in a wedge with a straight rim, of width 2 tan(psi) x; its flanks are
-staircases and two-dimensional stiffness makes it a plate. So the beam's measure is taken first, the moment summed over the
-width; and beside it the load at which a first cell reaches the strength, which the corners of the staircase lower in
-narrow wedges, and the moment along the rim in wide ones: those are no beams any more.
+staircases and two-dimensional stiffness makes it a plate. So the beam's measure is taken first, the moment summed over
+the width; and beside it the load at which a first cell reaches the strength, which the corners of the staircase lower
+in narrow wedges, and the moment along the rim in wide ones: those are no beams any more.
 """
 
 from __future__ import annotations
@@ -132,16 +132,15 @@ def _figure(p: dict[str, Any], per_angle: float, wedges: Array) -> Figure:
         end = max(p["psi"])
         axes.plot([0.0, end], [0.0, 1e-6 * per_angle * np.radians(end)], "k-", label="beam of growing width")
         slope, mean, first = wedges
-        psi = np.arctan(slope)
         axes.plot(
-            np.degrees(psi),
+            np.degrees(slope),
             1e-6 * mean,
             "o",
             mfc="none",
-            label="lattice, mean stress over the width (straight rim: tan psi)",
+            label="lattice, mean stress over the width",
         )
-        axes.plot(np.degrees(psi), 1e-6 * first, "x", label="lattice, first cell")
-        axes.set(xlabel="half-angle [degrees]", ylabel="load [MN]")
+        axes.plot(np.degrees(slope), 1e-6 * first, "x", label="lattice, first cell")
+        axes.set(xlabel="half-angle; of the lattice, with a straight rim, its tangent [degrees]", ylabel="load [MN]")
         axes.legend()
 
     return Figure("load", "Load of a wedge of the sheet at its rim", draw)
