@@ -138,6 +138,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     force = np.interp(shares * h, elastic.w, elastic.force)
     finite = p["E"] * h * (h - shares * h) * (h**2 - (h - shares * h) ** 2) / L**3
     F, T = (np.interp(shares * h, crushed.w, y) for y in (crushed.force, crushed.thrust))
+    finite_share = (1.0 - shares) * (1.0 - 0.5 * shares)
     arm = h - T / p["sigma_c"]
     later = shares >= 0.05  # where the edges have crushed
     return CaseResult(
@@ -152,7 +153,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
                  (F * L / (2.0 * T * arm))[later], "-", np.ones(later.sum()), 0.03, SOURCE),
             value("thrust of the crushing arch", T, "N/m"),
             value("force of the elastic arch over that of struts, E h u (h^2 - u^2) / L^3", force / finite, "-"),
-            value("excess over finite rotations of the same blocks", 1.0 / (1.0 - shares) / (1.0 - 0.5 * shares) - 1.0, "-"),
+            value("excess over finite rotations of the same blocks", 1.0 / finite_share - 1.0, "-"),
             value("excess over finite rotations of the crushing arch", arm / (arm - shares * h) - 1.0, "-"),
         ],
         [_figure(p, elastic, crushed, stiffness)],
