@@ -20,6 +20,8 @@ from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble
 from coupling.steering import ByPower, Steering, fixed
+from lattice.cracks.beam import Beam
+from lattice.cracks.make import Measured, cracking_sheet
 from lattice.criteria.table import chosen
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
@@ -110,12 +112,23 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
         "held": held,
         "damping": damping,
         "alpha": alpha,
-        "criteria": chosen(scenario.fracture.criteria),
+        "criteria": chosen(scenario.fracture.judged),
     }
-    if scenario.fracture.propagation == "dynamic":
+    dynamic = scenario.fracture.propagation == "dynamic"
+    if scenario.fracture.cracks == "closing":
+        return cracking_sheet(grid, ice, springs, window, build_measured(scenario), dynamic=dynamic, **common)
+    if dynamic:
         return ExplicitSheet(grid, ice, springs, window, **common)
     windows = max(1, round(scenario.fracture.longest_step / window))
     return Sheet(grid, ice, springs, window, **common, long_step=windows)
+
+
+def build_measured(scenario: Scenario) -> Measured:
+    """What the strength of the layers of cracking ice follows from."""
+    f, test = scenario.fracture, scenario.ice.beam_test
+    beam = None if test is None else Beam(test.length, test.width, test.failure_load)
+    concentration = 1.0 if test is None else test.concentration
+    return Measured(f.fracture_energy, f.crack_friction, beam, concentration, f.layer_strength)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:

@@ -54,6 +54,9 @@ class Scheduler:
         self.t_ns += self.window_ns
         load = self.rubble.load()
         load[Phase.BREAKING] += report.load
+        if report.hinged is not None:
+            load[Phase.BREAKING] -= report.hinged
+            load[Phase.ROTATING] += report.hinged
         books = self.ledger.close_window(
             self.t_ns,
             self.sheet.mass,

@@ -4,9 +4,9 @@ A cell fails in the sub-step in which its utilisation reaches 1, the time of whi
 again: what the cell carried goes out as waves, and the next cell fails when they have loaded it. Loose pieces leave
 in the same sub-step.
 
-The combined tensile criterion is looked at in every sub-step, inside the compiled loop. Other criteria are judged at
-the end of each block of sub-steps between two evaluations of the contact (`ExplicitSheet.block`, at most
-`CONTACT_TIME`): a cell then fails up to that much late.
+A tensile criterion (`screen.SCREENED`, of several the first) is looked at in every sub-step, inside the compiled loop.
+Other criteria are judged at the end of each block of sub-steps between two evaluations of the contact
+(`ExplicitSheet.block`, at most `CONTACT_TIME`): a cell then fails up to that much late.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.judge import Standing
-from lattice.criteria.laws import combined_tension
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.easing import Easing
 from lattice.explicit.engine import ExplicitEngine, Marched
 from lattice.explicit.forces import PointForces, Touch, touch_at
 from lattice.explicit.layout import U_X
+from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release
 from lattice.grid import Array, BoolArray, Grid, IntArray
@@ -70,8 +70,11 @@ class ExplicitSheet(Floe):
         super().__init__(made, dt, held=held, share=share, criteria=criteria)
         self._contact_time = contact_time
         self.block = max(1, int(contact_time / made.dt))  #: sub-steps between two evaluations of the contact
-        self._screened = any(c.judge is combined_tension for c in criteria)  #: the loop stops at an overloaded cell
-        self._others = any(c.judge is not combined_tension for c in criteria)  #: blocks are judged at their end
+        screened = [c.judge for c in criteria if c.judge in SCREENED][:1]
+        self._screened = bool(screened)  #: the loop stops at an overloaded cell
+        self._others = len(criteria) > len(screened)  #: blocks are judged at their end
+        for judge in screened:
+            made.watch(judge)
         self._lively, self._loss_rate = True, 0.0
         self._easing = Easing(grid.cells, ice.sigma_t)
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from lattice.contact import EdgeContact, NoContact
+from lattice.cracks.hinges import Hinges, no_hinges
 from lattice.criteria.judge import Judge, Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.energy import EnergyBooks
@@ -137,6 +138,16 @@ class Floe(ABC):
     def joins(self) -> BoolArray:
         """Cells that hold their nodes together, (cells,)."""
         return self.intact
+
+    @property
+    def damage(self) -> Array:
+        """How far each cell is broken, 0 to 1, (cells,)."""
+        return np.asarray(~self.intact, np.float64)
+
+    @property
+    def hinges(self) -> Hinges:
+        """Cracks that go on carrying load, and what they divide."""
+        return no_hinges(self.grid.nodes)
 
     @property
     def front(self) -> IntArray:

@@ -13,6 +13,7 @@ from cosim.scenario.section import Coefficient, Section, fault
 from cosim.scenario.units import (
     Acceleration,
     Density,
+    EnergyPerAreaOrZero,
     Force,
     Length,
     LengthOrZero,
@@ -47,7 +48,9 @@ class BeamTest(Section):
     length: Length  #: L_b of (4.27), from root to load [m]
     width: Length  #: w; the limit ends where d reaches twice this [m]
     failure_load: Force  #: F_c of (4.27) [N]
-    factor: float = Field(0.75, gt=0, le=1)  #: f of (4.30) and (4.31), found by simulating the beam
+    factor: float = Field(0.75, gt=0, le=1)  #: f of (4.30) and (4.31), found by simulating the beam; for open cracks
+    #: by which the stress at the root exceeded that of beam theory, where ice is taken as brittle; for closing cracks
+    concentration: float = Field(1.0, ge=1)
 
 
 #: strengths of [ice]: the field of `lattice.ice.Ice`, and its sign there
@@ -70,9 +73,9 @@ class Ice(Section):
     density: Density  #: rho_i, below that of the water [kg/m3]
     youngs_modulus: Stress  #: E, effective, of the whole thickness [Pa]
     poisson_ratio: float  #: nu, 0 to 1/3; below 1/3 a sheet that turns is strained
-    tensile_strength: Stress  #: sigma_t, in-plane [Pa]
-    flexural_strength: Stress  #: sigma_f; without a beam test also the limit beside a crack tip [Pa]
-    compressive_strength: Stress  #: sigma_c, uniaxial; shapes the envelope (4.6) [Pa]
+    tensile_strength: Stress = None  #: sigma_t, in-plane; for open cracks [Pa]
+    flexural_strength: Stress = None  #: sigma_f; without a beam test also the limit beside a crack tip [Pa]
+    compressive_strength: Stress  #: sigma_c, uniaxial; of closed cracks, and shapes the envelope (4.6) [Pa]
     shear_strength: Stress = None  #: sigma_s, out of plane (thesis 5.3) [Pa]
     spalling_strength: Stress = None  #: magnitude of the sum of principal stresses at which ice spalls (4.9) [Pa]
     upward_flexural_strength: Stress = None  #: sigma_f with the bottom in tension (4.15) [Pa]
@@ -148,6 +151,24 @@ class Fracture(Section):
 
     #: quasi-static: implicit engine, cracks run between two windows; dynamic: explicit engine with waves and inertia
     propagation: Literal["quasi-static", "dynamic"] = "quasi-static"
-    #: by which the sheet's cells fail, the worst of them counts; the default is what the thesis judges in chapter 6
-    criteria: Criteria = ("combined-tension",)
-    longest_step: Time = 0.2  #: longest step of the sheet while nothing fails and no rubble touches it [s]
+    #: closing: a cracked cell carries thrust with an arm, friction and shear; open: it carries nothing (the thesis)
+    cracks: Literal["closing", "open"] = "closing"
+    #: by which the sheet's cells fail, or begin to crack, the worst of them counts; by default combined-tension, what
+    #: the thesis judges in chapter 6, for open cracks, and principal-stress for closing ones
+    criteria: Criteria | None = None
+    #: G_f of ice that softens, 0 for brittle; for closing cracks. Default: sea ice, K_Q = 250 kPa m^0.5 at E = 4 GPa
+    #: (Dempsey, Adamson and Mulmule 1999) [J/m2]
+    fracture_energy: EnergyPerAreaOrZero = 15.0
+    crack_friction: Coefficient = 0.3  #: of the faces of a crack on each other; for closing cracks
+    #: tensile strength of a layer where it is known [Pa]; by default found by simulating a beam test: `ice.beam_test`,
+    #: or a beam of usual proportions that breaks at `ice.flexural_strength`; for closing cracks
+    layer_strength: Stress = None
+    #: longest step of the sheet while nothing fails and no rubble touches it [s]; for open cracks
+    longest_step: Time = 0.2
+
+    @property
+    def judged(self) -> tuple[str, ...]:
+        """Names of the criteria that are judged."""
+        if self.criteria is not None:
+            return tuple(self.criteria)
+        return ("combined-tension",) if self.cracks == "open" else ("principal-stress",)

@@ -60,7 +60,11 @@ class ScenarioModel(Section):
 
     @model_validator(mode="after")
     def _criteria_have_their_strengths(self) -> Self:
-        needed = strengths_of(self.fracture.criteria)
+        needed = strengths_of(self.fracture.judged)
+        if self.fracture.cracks == "closing":  # tension is judged with the strength of the layers, from a beam test
+            needed.pop("sigma_t", None)
+            if self.fracture.layer_strength is not None or self.ice.beam_test is not None:
+                needed.pop("sigma_f", None)
         for key, (field, _) in STRENGTHS.items():
             if field in needed and getattr(self.ice, key) is None:
                 raise fault(

@@ -18,7 +18,9 @@ class Event:
 
     ``kind`` is one of ``cell_failure`` (a first failure after a quiet window), ``split`` (the sheet falls into two
     parts that both stay in the lattice), ``circumferential`` (a piece in front of the structure
-    breaks off), ``hand_over`` (a fragment has become blocks), ``out_of_water`` (for the first time the sheet is lifted
+    breaks off), ``hand_over`` (a fragment has become blocks), ``crack``
+    (a crack has passed the middle of the ice: from there on it is a hinge), ``hinge`` (cracks so deep surround a piece
+    that still is held by what presses it), ``out_of_water`` (for the first time the sheet is lifted
     by more than its draft, where its linear foundation ends).
     """
 
@@ -79,10 +81,10 @@ class SheetView:
     """The sheet at one instant, for observers."""
 
     position: Array  #: (n, 3) nodes, middle of the thickness [m]
-    damage: Array  #: (n,) share of the node's cells that have failed, 0-1
+    damage: Array  #: (n,) mean damage of the node's cells: failed, or depth of their crack, 0-1
     utilisation: Array  #: (n,) highest utilisation of the node's intact cells (1 = fails)
     present: BoolArray  #: (n,) node is still part of the lattice
-    intact: BoolArray  #: (c,) cell is intact
+    intact: BoolArray  #: (c,) cell holds its nodes together
     shape: tuple[int, int]  #: nodes along x and y; node number = row * shape[1] + column
     cell_shape: tuple[int, int]  #: cells along x and y; cell (i, j) joins nodes (i, j), (i+1, j), (i, j+1), (i+1, j+1)
 
@@ -111,6 +113,7 @@ class SheetReport:
     budget: ForcePairs = field(default_factory=dict)  #: what carries the sheet, see `coupling.budget`
     loads: ForcePairs = field(default_factory=dict)  #: mean force of each `Load` on the sheet, by its name
     contact: ContactForces = field(default_factory=ContactForces.none)  #: the load, where it acts
+    hinged: Array | None = None  #: (3,) part of the load that hinged pieces give; None: there are none [N]
 
 
 class SheetParticipant(Protocol):

@@ -40,6 +40,23 @@ def failures(t_ns: int, load: Array, failed: Failed, where: Array, parts: int | 
     return events
 
 
+def crack(t_ns: int, load: Array, where: Array, length: float) -> Event:
+    """Cracks of this length [m] in all have passed the middle of the ice."""
+    text = f"cracks of {length:.0f} m have passed the middle of the ice: they are hinges under thrust"
+    return event(t_ns, "crack", load, NONE, where, text, (length, 0.0))
+
+
+def hinge(t_ns: int, load: Array, where: Array, area: float) -> Event:
+    """Pieces of this area [m2] in all are surrounded by cracks."""
+    text = f"{area:.0f} m2 are surrounded by cracks and held by what presses them"
+    return event(t_ns, "hinge", load, NONE, where, text, (0.0, area))
+
+
+def hinged_apart(t_ns: int, load: Array, where: Array, parts: int) -> Event:
+    """The floe has fallen into parts that closed cracks still join."""
+    return event(t_ns, "split", load, NONE, where, f"the floe splits, {parts} parts are hinged to each other")
+
+
 def departure(t_ns: int, load: Array, failed: Failed, f: Fragment, at_structure: bool) -> list[Event]:
     """A piece leaves the lattice, in front of the structure or elsewhere, after cells have failed."""
     where = np.average(f.position, axis=0, weights=f.length * f.width)

@@ -12,6 +12,7 @@ from coupling.contact_friction import friction_part
 from coupling.interface import (
     NS,
     Array,
+    ContactForces,
     Fragment,
     IntArray,
     Load,
@@ -31,6 +32,7 @@ from coupling.sheet_port.motion import Motion
 from coupling.sheet_port.underside import Underside
 from coupling.sheet_port.view import view
 from coupling.sheet_port.watch import Watch
+from lattice.cracks.hinges import Hinges
 from lattice.floe import Floe
 from lattice.loads import NodeLoad
 from lattice.memory import recall, remember
@@ -86,7 +88,9 @@ class SheetPort:
         self.power = self._power(rubble)
         contact = self.front.forces(out)
         self.front.crush()
+        hinges = self.sheet.hinges
         events = self.watch.window(out, parts, self._left, load, rubble_load)
+        events += self.watch.cracks(hinges, load + rubble_load)
         r = out.reaction
         budget = {
             "pressed_sheet": r.foundation,
@@ -96,7 +100,7 @@ class SheetPort:
             "staggering": r.applied.get(RUBBLE, (0.0, 0.0)),
         }
         others = {name: pair for name, pair in r.applied.items() if name != RUBBLE}
-        return SheetReport(load, [f for f, _ in self._left], events, budget, others, contact)
+        return SheetReport(load, [f for f, _ in self._left], events, budget, others, contact, _hinged(contact, hinges))
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""
@@ -177,3 +181,9 @@ class SheetPort:
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""
         return view(self.sheet, self.motion)
+
+
+def _hinged(contact: ContactForces, hinges: Hinges) -> Array | None:
+    """Load that hinged pieces give, (3,) [N]; None if there are none."""
+    on = hinges.hinged[contact.nodes]
+    return -contact.force[on].sum(axis=0) if on.any() else None

@@ -12,15 +12,14 @@ from lattice.floe import Floe
 
 @compiled()
 def _at_nodes(
-    cell_nodes: IntArray, nodes: int, intact: BoolArray, live: BoolArray, utilisation: Array
+    cell_nodes: IntArray, nodes: int, damage: Array, live: BoolArray, utilisation: Array
 ) -> tuple[Array, Array]:
-    """Share of failed cells and largest utilisation of live ones around each node, (nodes,) both."""
+    """Mean damage of the cells and largest utilisation of live ones around each node, (nodes,) both."""
     every, failed, worst = np.zeros(nodes), np.zeros(nodes), np.zeros(nodes)
     for c in range(cell_nodes.shape[0]):
         for n in cell_nodes[c]:
             every[n] += 1.0
-            if not intact[c]:
-                failed[n] += 1.0
+            failed[n] += damage[c]
             if live[c] and utilisation[c] > worst[n]:
                 worst[n] = utilisation[c]
     return failed / every, worst
@@ -29,13 +28,13 @@ def _at_nodes(
 def view(sheet: Floe, motion: Motion) -> SheetView:
     """Positions, damage and utilisation."""
     g, live = sheet.grid, sheet.live_cells
-    damage, utilisation = _at_nodes(g.cell_nodes, g.nodes, sheet.intact, live, sheet.utilisation)
+    damage, utilisation = _at_nodes(g.cell_nodes, g.nodes, sheet.damage, live, sheet.utilisation)
     return SheetView(
         position=motion.position(np.arange(g.nodes)),
         damage=damage,
         utilisation=utilisation,
         present=sheet.present.copy(),
-        intact=live,
+        intact=sheet.joins & sheet.present[g.cell_nodes].all(axis=1),
         shape=(g.nx, g.ny),
         cell_shape=(g.nx - 1, g.ny - 1),
     )

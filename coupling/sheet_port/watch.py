@@ -7,8 +7,11 @@ import numpy as np
 from coupling.interface import NS, Array, Event, Fragment
 from coupling.sheet_port import events
 from coupling.sheet_port.motion import Motion
+from lattice.cracks.hinges import Hinges
 from lattice.floe import Floe
 from lattice.outcome import Outcome
+
+HINGED_MORE = 0.2  #: by how much more ice is hinged before it is told again [-]
 
 
 class Watch:
@@ -18,6 +21,7 @@ class Watch:
         self._sheet, self._motion = sheet, motion
         self.draft = sheet.ice.h - sheet.ice.freeboard  #: lift at which the floating sheet leaves the water [m]
         self._quiet, self._afloat = True, True
+        self._deep, self._deepening, self._hinged, self._halves = 0, False, 0.0, 1
 
     def window(
         self, out: Outcome, parts_before: int, left: list[tuple[Fragment, bool]], load: Array, rubble_load: Array
@@ -42,6 +46,23 @@ class Watch:
             found += events.failures(t_ns, load, failed, where, parts, self._quiet)
         for fragment, at_structure in left:
             found += events.departure(t_ns, load, failed, fragment, at_structure)
+        return found
+
+    def cracks(self, hinges: Hinges, load: Array) -> list[Event]:
+        """Cracks that become hinges after a quiet window, pieces that they surround, halves that they part."""
+        t_ns, found, grid = round(self._motion.t * NS), [], self._sheet.grid
+        grows, area = len(hinges.cells) > self._deep, float(grid.area[hinges.hinged].sum())
+        if grows and not self._deepening:
+            where = self._motion.position(grid.cell_nodes[hinges.cells].ravel()).mean(axis=0)
+            found.append(events.crack(t_ns, load, where, len(hinges.cells) * grid.d))
+        if area > (1.0 + HINGED_MORE) * self._hinged:
+            where = self._motion.position(np.flatnonzero(hinges.hinged)).mean(axis=0)
+            found.append(events.hinge(t_ns, load, where, area))
+        if hinges.parts > self._halves:
+            where = self._motion.position(grid.cell_nodes[hinges.cells].ravel()).mean(axis=0)
+            found.append(events.hinged_apart(t_ns, load, where, hinges.parts))
+        self._deep, self._deepening = len(hinges.cells), grows
+        self._hinged, self._halves = (area if area > self._hinged else self._hinged), max(self._halves, hinges.parts)
         return found
 
     def lifted_out(self, load: Array) -> list[Event]:

@@ -130,12 +130,12 @@ class BeamTest:
         e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), np.ones(self.cut.grid.nodes, bool))
 
 
-def layer_strength(ice: Ice, law: CrackLaw, fracture_energy: float, beam: Beam, d: float) -> float:
+def layer_strength(ice: Ice, mu: float, fracture_energy: float, beam: Beam, d: float) -> float:
     """Strength of the layers with which the simulated beam breaks at its load [Pa]; cells of about ``d`` [m]."""
     wanted, sigma, cut = beam.stress(ice.h), beam.stress(ice.h) / 1.3, cut_beam(beam, d)
     for _ in range(TRIALS):
         trial = replace(ice, sigma_t=sigma, sigma_f=sigma, beam_test=None)
-        found = BeamTest(trial, law_of(trial, fracture_energy, law.mu, cut.grid.d), cut).strength()
+        found = BeamTest(trial, law_of(trial, fracture_energy, mu, cut.grid.d), cut).strength()
         if abs(found - wanted) <= CLOSE * wanted:
             return sigma
         sigma *= wanted / found

@@ -15,6 +15,7 @@ from lattice.cracks.cells import (
     K_XY,
     K_Y,
     MOVED,
+    WIDE,
     Cracks,
     Plate,
     edge_energy,
@@ -54,7 +55,9 @@ class Nodes(NamedTuple):
 def moved(k: int, my: int, y: Array, layered: Layered) -> bool:
     """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
     plate, s = layered.plate, layered.cells.seen
-    half, far = 0.5 * plate.h, MOVED * layered.law.e_0
+    half = 0.5 * plate.h
+    wide = max(abs(s[E_X, k]) + half * abs(s[K_X, k]), abs(s[E_Y, k]) + half * abs(s[K_Y, k]))
+    far: float = MOVED * (layered.law.e_0 + WIDE * wide)
     e, _ = strain_of(layered.cells.corner[k], my, 0.5 / plate.d, y)
     a: float = abs(e.n - s[E_X, k]) + half * abs(e.kn - s[K_X, k])
     c: float = abs(e.t - s[E_Y, k]) + half * abs(e.kt - s[K_Y, k])

@@ -15,6 +15,7 @@ import numpy as np
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import CrackingEngine
+from lattice.cracks.hinges import DEEP, Hinges, hinges, no_hinges
 from lattice.cracks.law import CrackLaw
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import CRITERIA, Criterion
@@ -23,8 +24,8 @@ from lattice.explicit.forces import PointForces
 from lattice.explicit.window import Window
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Release
-from lattice.grid import BoolArray
-from lattice.loads import Loads
+from lattice.grid import Array, BoolArray, IntArray
+from lattice.loads import Loads, total
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import TURNED
 from lattice.strain import CellState
@@ -43,6 +44,12 @@ class CrackingSheet(ExplicitSheet):
         make = partial(CrackingEngine, law=law, scaling=scaling)
         super().__init__(*args, criteria=criteria, engine=make, **options)
         self._pull = 0.0  #: impulse along x that held nodes have taken from layered cells in this window [N s]
+
+    def rest_under(self, loads: Loads) -> None:
+        """As `Floe.rest_under`; cells that are overloaded at rest begin to crack in the first window."""
+        self.state = self.engine.equilibrium(*total(loads, self.grid.nodes))
+        self.utilisation = self._utilisation(self.state)
+        self.energy.begin(self.state, self.live_cells, self.present, loads)
 
     # ---- what begins to crack ---------------------------------------------------------------------------------
 
@@ -91,6 +98,30 @@ class CrackingSheet(ExplicitSheet):
         joins = self.intact.copy()
         joins[self.engine.layered.cell[~self._parted()]] = True
         return joins
+
+    @property
+    def damage(self) -> Array:
+        """Share of the thickness that is cracked across the first crack, (cells,)."""
+        damage = np.asarray(~self.intact, np.float64)
+        damage[self.engine.layered.cell] = self.engine.layered.depth
+        return damage
+
+    @property
+    def hinges(self) -> Hinges:
+        """What cracks that have passed the middle of the ice divide, at the end of the last window."""
+        layered = self.engine.layered
+        deep = layered.depth >= DEEP
+        if not deep.any():
+            return no_hinges(self.grid.nodes)
+        whole = self.joins & self.present[self.grid.cell_nodes].all(axis=1)
+        whole[layered.cell[deep]] = False
+        return hinges(self.grid, whole, layered.cell[deep], self.present, self.held, self.share)
+
+    def retire(self, nodes: IntArray) -> None:
+        """As `Floe.retire`."""
+        super().retire(nodes)
+        gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
+        self.engine.layered.drop(gone)
 
     def _parted(self) -> BoolArray:
         """Layered cells whose crack is through, pressed by nothing, and open or slipped by h/2, (count,)."""

@@ -14,12 +14,13 @@ import scipy.sparse as sp
 
 from lattice.assembly import assemble
 from lattice.contact import EdgeContact, lever_of, point_displacement
+from lattice.criteria.laws import combined_tension
 from lattice.explicit import layout
 from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import Motion, PerNode
 from lattice.explicit.march import march
-from lattice.explicit.screen import screen_of, thresholds
+from lattice.explicit.screen import Judge, screen_of, thresholds
 from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.implicit.engine import Engine
@@ -79,6 +80,7 @@ class ExplicitEngine(Engine):
                 f"{self.critical:.3g} s (largest frequency of the lattice, damping included)"
             )
         self.damping = damping
+        self._judge: Judge = combined_tension
         self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
         self.set_window(window)
 
@@ -87,6 +89,10 @@ class ExplicitEngine(Engine):
         self.window = window
         self.sub_steps = math.ceil(window / (self._longest or SHARE_OF_CRITICAL * self.critical))
         self.allocate(window / self.sub_steps)
+
+    def watch(self, judge: Judge) -> None:
+        """From now on `march` stops where this law of `screen.SCREENED` says so."""
+        self._judge, self.screen = judge, screen_of(self.ice, judge)
 
     def _critical_step(self) -> float:
         K_u, K_q = assemble(self.grid, self.rows_u).tocsr(), assemble(self.grid, self.rows_q).tocsr()
@@ -102,7 +108,7 @@ class ExplicitEngine(Engine):
         u, q = self.inertia_u[::2], self.inertia_q
         kick = PerNode(np.where(self._held[::2], 0.0, dt / u), dt / q[::3], dt / q[1::3])
         pace = layout.pace(ice, dt, self.alpha, self.damping)
-        self.mesh, self.screen = layout.mesh(g, kick, self._springs, pace, dt), screen_of(ice)
+        self.mesh, self.screen = layout.mesh(g, kick, self._springs, pace, dt), screen_of(ice, self._judge)
         self.motion = layout.motion(g)
         self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
 
@@ -114,7 +120,7 @@ class ExplicitEngine(Engine):
         g = self.grid
         shape = (g.nx - 1, g.ny - 1)
         self.mesh.intact[1 : g.nx, 1 : g.ny] = live.reshape(shape)
-        threshold = np.where(live, thresholds(limits, self.ice, g.d), np.inf)
+        threshold = np.where(live, thresholds(limits, self.ice, g.d, self._judge), np.inf)
         self.mesh.threshold[: g.nx - 1, : g.ny - 1] = threshold.reshape(shape)
         gone = ~present.reshape(g.nx, g.ny)
         for array in self.motion:

@@ -1,42 +1,60 @@
-"""The combined tensile criterion in every sub-step: a quick look whether any face of a cell has reached its limit.
+"""A tensile criterion in every sub-step: a quick look whether any face of a cell has reached its limit.
 
-It repeats `criteria.laws.combined_tension` without leaving the arrays of the loops; a test holds the two together.
-What it finds is judged by `criteria.judge` like everything else.
+It repeats a law of `criteria.laws` without leaving the arrays of the loops; a test holds the two together. What it
+finds is judged by `criteria.judge` like everything else. All laws of the form F_1 mean + R >= F_2 limit / E at the
+faces can be looked at so, those of `SCREENED`.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from lattice.compiled import compiled
+from lattice.criteria.laws import combined_tension, principal_stress
 from lattice.criteria.mohr import bending_fibre, mohr_factors
 from lattice.explicit.layout import PHI_X, PHI_Y, U_X, U_Y, Motion
 from lattice.grid import Array
 from lattice.ice import Ice
+from lattice.strain import CellState
+
+Judge = Callable[[CellState, Ice], Array]
 
 
 class Screen(NamedTuple):
-    """Constants of (4.6) with (4.17)-(4.20)."""
+    """Constants of a law F_1 mean + R >= F_2 limit / E at the faces."""
 
     F_1: float
-    fibre: float  #: h/2 sigma_t / sigma_f [m]
+    fibre: float  #: height of the faces [m]; for (4.17)-(4.20) h/2 sigma_t / sigma_f
 
 
-def screen_of(ice: Ice) -> Screen:
-    """Constants for this ice."""
-    return Screen(_factors(ice)[0], bending_fibre(ice))
-
-
-def thresholds(limits: Array, ice: Ice, d: float) -> Array:
-    """What F_1 mean + R is compared with, for tensile limits [Pa], as sums of node differences [m]."""
-    return 4.0 * d * _factors(ice)[1] * limits / ice.E
-
-
-def _factors(ice: Ice) -> tuple[float, float]:
+def _combined(ice: Ice) -> tuple[float, float]:
+    """F_1 and F_2 of (4.6)."""
     return mohr_factors(ice.nu, np.inf if np.isinf(ice.sigma_t) else ice.sigma_c / ice.sigma_t)
+
+
+def _principal(ice: Ice) -> tuple[float, float]:
+    """The largest principal stress: (4.6) without an end in compression."""
+    return mohr_factors(ice.nu, np.inf)
+
+
+SCREENED: dict[Judge, Callable[[Ice], tuple[float, float]]] = {
+    combined_tension: _combined,
+    principal_stress: _principal,
+}
+
+
+def screen_of(ice: Ice, judge: Judge = combined_tension) -> Screen:
+    """Constants of a law for this ice."""
+    return Screen(SCREENED[judge](ice)[0], bending_fibre(ice))
+
+
+def thresholds(limits: Array, ice: Ice, d: float, judge: Judge = combined_tension) -> Array:
+    """What F_1 mean + R is compared with, for tensile limits [Pa], as sums of node differences [m]."""
+    return 4.0 * d * SCREENED[judge](ice)[1] * limits / ice.E
 
 
 @compiled(nogil=True)

@@ -74,7 +74,7 @@ def calibrated(p: dict[str, Any], nominal: float, energy: float, d: float) -> fl
     """Strength of the layers [Pa]."""
     load = nominal * p["width"] * p["h"] ** 2 / (6.0 * p["length"])
     ice = ice_of(p, nominal)
-    return layer_strength(ice, law_of(ice, energy, MU, d), energy, Beam(p["length"], p["width"], load), d)
+    return layer_strength(ice, MU, energy, Beam(p["length"], p["width"], load), d)
 
 
 def load_of_beam(p: dict[str, Any], sigma: float, energy: float, d: float) -> float:

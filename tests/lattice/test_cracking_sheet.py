@@ -1,0 +1,119 @@
+"""The sheet whose cracks close: what it conserves, what it remembers, and the strength of its layers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lattice.contact import NoContact
+from lattice.cracks.beam import Beam, BeamTest, cut_beam, layer_strength, standard_beam
+from lattice.cracks.hinges import hinges
+from lattice.cracks.law import law_of
+from lattice.cracks.make import Measured, cracking_sheet
+from lattice.grid import Grid
+from lattice.ice import Ice
+from lattice.loads import NodeLoad
+from lattice.stiffness import hrennikoff
+
+ICE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0, sigma_f=750e3, sigma_c=4e6)
+GRID = Grid(13, 13, 3.0, -36.0, -18.0)
+
+
+def sheet_of(strength=450e3, fracture_energy=300.0, scaling=1.0):
+    held = np.zeros((GRID.nodes, 2), bool)
+    held[GRID.edge_nodes("x-")] = True
+    measured = Measured(fracture_energy, 0.3, strength=strength)
+    options = {"held": held, "damping": 0.1 * np.sqrt(ICE.k_f * ICE.rho_i * ICE.h), "alpha": 1e-4, "scaling": scaling}
+    return cracking_sheet(GRID, ICE, hrennikoff(ICE), 0.05, measured, **options)
+
+
+def pushed(sheet, seconds, force, ramp=1.0):
+    """A push down and along on the middle of the front edge, growing over ``ramp`` [s]; lowest point of the edge."""
+    node, low, t = GRID.node(GRID.nx - 1, GRID.ny // 2), [], getattr(sheet, "t", 0.0)
+    end = t + seconds
+    while t < end - 1e-9:
+        u, q = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
+        share = min((t + 0.05) / ramp, 1.0)
+        u[node, 0], q[node, 0] = -share * force[0], -share * force[1]
+        sheet.advance(t, [NodeLoad("push", u, q)], NoContact(), lambda _: None)
+        t += 0.05
+        low.append(float(sheet.state.q[node, 0]))
+    sheet.t = t
+    return np.array(low)
+
+
+def test_a_push_cracks_the_sheet_and_it_holds():
+    sheet = sheet_of()
+    low = pushed(sheet, 2.5, (0.0, 4e6))
+    assert sheet.engine.layered.count > 5
+    assert np.isfinite(low).all()
+    e, lost = sheet.energy, sum(sheet.engine.crack_losses.values())
+    assert lost > 0.0
+    assert abs(e.residual) < 1e-5 * abs(e.received)
+    assert abs(e.residual) < 0.05 * lost
+    assert abs(e.residual + lost) > 0.5 * lost  # the wrong twin: a balance that does not know what cracks take
+
+
+def test_a_window_again_has_the_same_bits():
+    sheet = sheet_of()
+    pushed(sheet, 1.0, (0.0, 4e6))
+    saved = sheet.save()
+    first = pushed(sheet, 0.5, (0.0, 4e6))
+    count, losses = sheet.engine.layered.count, dict(sheet.engine.crack_losses)
+    sheet.restore(saved)
+    again = pushed(sheet, 0.5, (0.0, 4e6))
+    assert np.array_equal(first, again)
+    assert (sheet.engine.layered.count, sheet.engine.crack_losses) == (count, losses)
+
+
+def test_brittle_ice_cracks_under_less_than_ice_that_softens():
+    """With one strength of the layers, the fracture energy holds the crack back."""
+    brittle, soft = sheet_of(fracture_energy=0.0), sheet_of(fracture_energy=1000.0)
+    assert pushed(brittle, 1.5, (0.0, 3e6)).min() < pushed(soft, 1.5, (0.0, 3e6)).min()
+
+
+def test_scaled_inertia_leaves_slow_motion_alone():
+    """Four times the fast inertia, the same deflection of the whole sheet under a slow push within 1 %."""
+    fast, slow = sheet_of(strength=1e9), sheet_of(strength=1e9, scaling=4.0)
+    a, b = pushed(fast, 4.0, (1e6, 1e6), ramp=2.0), pushed(slow, 4.0, (1e6, 1e6), ramp=2.0)
+    assert slow.engine.dt > 1.3 * fast.engine.dt
+    assert b[-1] == pytest.approx(a[-1], rel=0.01)
+
+
+# ---- the strength of the layers -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("nominal", "fracture_energy"), [(750e3, 300.0), (967e3, 0.0)])
+def test_the_simulated_beam_breaks_at_its_load(nominal, fracture_energy):
+    """Basin beam, 18 x 6 x 3 m, in cells of 2.8 m: within 2 % of what was asked for."""
+    beam = Beam(18.0, 6.0, nominal * 6.0 * 9.0 / (6.0 * 18.0))
+    strength = layer_strength(ICE, 0.3, fracture_energy, beam, 2.8)
+    layers, cut = replace(ICE, sigma_t=strength, sigma_f=strength), cut_beam(beam, 2.8)
+    found = BeamTest(layers, law_of(layers, fracture_energy, 0.3, cut.grid.d), cut, seconds=9.0).strength()
+    assert found == pytest.approx(nominal, rel=0.02)
+
+
+def test_a_beam_of_usual_proportions_breaks_at_the_flexural_strength():
+    assert standard_beam(ICE).stress(ICE.h) == pytest.approx(ICE.sigma_f, rel=1e-12)
+    assert (standard_beam(ICE).length, standard_beam(ICE).width) == (18.0, 6.0)
+
+
+# ---- hinges -------------------------------------------------------------------------------------------------------
+
+
+def test_a_piece_between_deep_cracks_is_hinged_and_what_is_held_is_not():
+    whole = np.ones((GRID.nx - 1, GRID.ny - 1), bool)
+    whole[8, :] = False  # a crack across: everything in front of it is surrounded
+    deep = np.flatnonzero(~whole.ravel())
+    held, present = np.zeros(GRID.nodes, bool), np.ones(GRID.nodes, bool)
+    held[GRID.edge_nodes("x-")] = True
+    found = hinges(GRID, whole.ravel(), deep, present, held, 0.5)
+    rows = np.arange(GRID.nodes) // GRID.ny
+    assert np.array_equal(found.hinged, rows > 8)
+    assert len(found.pieces) == 1
+    assert found.parts == 1
+    halves = hinges(GRID, whole.ravel(), deep, present, held, 0.2)
+    assert not halves.hinged.any()  # a part of more than a fifth of the floe is half of a floe
+    assert halves.parts == 2
