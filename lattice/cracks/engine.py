@@ -21,6 +21,11 @@ from lattice.state import State
 from lattice.stiffness import Springs
 
 
+#: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
+#: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
+SLOW_DAMPING = 0.1
+
+
 class CrackingEngine(ExplicitEngine):
     """Leapfrog of a lattice with layered cells, which are none of its springs."""
 
@@ -29,8 +34,18 @@ class CrackingEngine(ExplicitEngine):
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        self.layered = LayeredCells(law, plate)
+        self.layered, self.scaling = LayeredCells(law, plate), float(options.get("scaling", 1.0))
         super().__init__(grid, ice, springs, window, **options)
+
+    def _critical_step(self) -> float:
+        """As `ExplicitEngine`; with scaled inertia material damping is cut to `SLOW_DAMPING` of the undamped one.
+
+        Stiffness-proportional damping does nothing to slow motion, but shortens sub-steps in proportion.
+        """
+        if self.scaling > 1.0:
+            asked, self.alpha = self.alpha, 0.0
+            self.alpha = min(asked, SLOW_DAMPING * super()._critical_step())
+        return super()._critical_step()
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""
