@@ -20,7 +20,6 @@ from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
 
-
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
 #: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
 SLOW_DAMPING = 0.1
