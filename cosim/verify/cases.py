@@ -34,6 +34,7 @@ from cosim.verify import (
     wedge,
 )
 from cosim.verify.case import CaseResult
+from cosim.verify.cracks import arch, beam_test, centre_crack, friction, hinged_ring, thrust, wedge_beams
 from cosim.verify.settings import merged, parse
 
 CASES: dict[str, ModuleType] = {
@@ -56,6 +57,13 @@ CASES: dict[str, ModuleType] = {
     "pile": pile,
     "pusher": pusher,
     "mohr-plane": mohr_plane,
+    "crack-thrust": thrust,
+    "crack-friction": friction,
+    "crack-arch": arch,
+    "beam-test": beam_test,
+    "wedge-beams": wedge_beams,
+    "hinged-ring": hinged_ring,
+    "centre-crack": centre_crack,
 }
 
 

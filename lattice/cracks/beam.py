@@ -18,6 +18,7 @@ from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import CrackLaw, law_of
 from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.layout import W
 from lattice.grid import BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.state import State
@@ -101,16 +102,17 @@ class BeamTest:
         e.start(State.rest(self.cut.grid.nodes), everything, ())
         spring = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2  # soft for the sub-step, stiff against the beam
         tangent = np.zeros((len(tip), 3, 3))
-        tangent[:, 2, 2] = -spring
-        here = np.zeros(len(tip))
-        at, none, largest, mean, t = np.zeros((len(tip), 3)), np.zeros((len(tip), 3)), 0.0, 0.0, 0.0
+        tangent[:, W, W] = -spring
+        at_node, none, largest, mean, t = np.zeros(len(tip)), np.zeros((len(tip), 3)), 0.0, 0.0, 0.0
+        at = np.zeros((len(tip), 3))
+        touch = Touch(row, column, at_node, at_node, at, none, tangent)
         while t < 8.0 * e.window:
-            at[:, 2] = -self.speed * (t + 0.5 * block * e.dt)
-            made = e.march(block, NOTHING, Touch(row, column, here, here, at, none, tangent), lively=False)
+            at[:, W] = -self.speed * (t + 0.5 * block * e.dt)
+            made = e.march(block, NOTHING, touch, lively=False)
             t += made.steps * e.dt
             if made.failed:
                 self._begin()
-            mean += 0.05 * (-float(made.contact[:, 2].sum()) - mean)  # over the tremor of the tip
+            mean += 0.05 * (-float(made.contact[:, W].sum()) - mean)  # over the tremor of the tip
             largest = max(largest, mean)
             if mean < FALL * largest and t > 0.1 * e.window:
                 width = (len(tip) - 1) * self.cut.grid.d

@@ -13,14 +13,13 @@ earlier or later than the tangent knew is booked as ``switching``.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre
 
 from lattice.compiled import compiled
-from lattice.cracks.law import layer
+from lattice.cracks.kinematics import Edges, Strain
 from lattice.grid import Array, IntArray
 
 
@@ -39,6 +38,12 @@ MOVED = 0.02  #: change of a face's strain, as share of e_0, at which the law is
 #: touch and those that do not is then known to 0.2 % of the thickness
 WIDE = 0.1
 HOURGLASS = 0.05  #: stiffness of the modes without mean strain, as share of E h (in bending times h^2 / 12)
+
+NN, NT, TT, GG = range(4)  #: entries of a tangent
+N_N, N_T, N_G, M_N, M_T, M_G = range(6)  #: resultants across the crack, along it and shear
+E_X, E_Y, G_XY, K_X, K_Y, K_XY = range(6)  #: strains in the axes of the sheet
+LOSSES = ("cracking", "crushing", "rubbing", "switching")
+CRACKING, CRUSHING, RUBBING, SWITCHING = range(4)  #: entries of ``Cracks.losses``
 
 
 class Plate(NamedTuple):
@@ -61,180 +66,83 @@ class Cracks(NamedTuple):
     slip: Array  #: (m, LAYERS) plastic shear strain
     shear_slip: Array  #: (m, 4) slip of the edge springs [m]
     thrust: Array  #: (m, 2) sum of the compression across n and t [N/m]
-    membrane: Array  #: (4, m) tangent nn, nt, tt, gg of N to the strain [N/m]
+    membrane: Array  #: (4, m) tangent `NN` ... of N to the strain [N/m]
     coupling: Array  #: (4, m) of N to the curvature and of M to the strain [N]
     bending: Array  #: (4, m) of M to the curvature [N m]
-    offset: Array  #: (6, m) N and M without strain [N/m], [N]
+    offset: Array  #: (6, m) `N_N` ... without strain [N/m], [N]
     stiff: Array  #: (4, m) tangent of the edge springs [N/m]
     held: Array  #: (4, m) their force without elongation [N]
-    seen: Array  #: (6, m) strain and curvature at the last evaluation, in the axes of the sheet
+    seen: Array  #: (6, m) `E_X` ... at the last evaluation
     constant: Array  #: (m,) energy by which the tangent's differs from what is stored [J]
-    force: Array  #: (20, m) on the nodes, in the present sub-step [N], [N m]
-    losses: Array  #: (4,) cracking, crushing, rubbing, switching: sums over all cells [J]
-
-
-LOSSES = ("cracking", "crushing", "rubbing", "switching")
+    force: Array  #: (4, 5, m) on nodes 0 to 3 in the present sub-step [N], [N m]
+    losses: Array  #: (4,) `CRACKING` ...: sums over all cells [J]
 
 
 def room_for(m: int) -> Cracks:
     """Room for m layered cells, none of them in use."""
-    f = np.zeros
+    zeros = np.zeros
     return Cracks(
-        f(m, np.int64), f(m, np.int64), f((2, m)), f((m, LAYERS, 2)), f((m, LAYERS, 2)), f((m, LAYERS)), f((m, 4)),
-        f((m, 2)), f((4, m)), f((4, m)), f((4, m)), f((6, m)), f((4, m)), f((4, m)), f((6, m)), f(m), f((20, m)), f(4),
-    )  # fmt: skip
-
-
-@compiled(inline="always")
-def gradients(b, my, q, y):
-    """d/dx, d/dy and the hourglass mode of one component y on the nodes of the cell at b."""
-    A, B, C, D = y[b], y[b + my], y[b + 1], y[b + my + 1]
-    return (B - A + D - C) * q, (C - A + D - B) * q, (A - B - C + D) * q
-
-
-@compiled(inline="always")
-def turned(e11, e22, g12, c, s):
-    """Strain (engineering shear) in axes turned by the angle of (c, s)."""
-    cc, ss, cs = c * c, s * s, c * s
-    return cc * e11 + ss * e22 + cs * g12, ss * e11 + cc * e22 - cs * g12, 2.0 * cs * (e22 - e11) + (cc - ss) * g12
-
-
-@compiled(inline="always")
-def turned_back(Nn, Nt, Ng, c, s):
-    """Stress resultants in the axes of the sheet."""
-    cc, ss, cs = c * c, s * s, c * s
-    return cc * Nn + ss * Nt - 2.0 * cs * Ng, ss * Nn + cc * Nt + 2.0 * cs * Ng, cs * (Nn - Nt) + (cc - ss) * Ng
-
-
-@compiled(inline="always")
-def elongations(b, my, half, y):
-    """Of the edge springs 0-1, 2-3, 0-2, 1-3 [m]; y (5, nodes)."""
-    w, px, py = y[2], y[3], y[4]
-    w0, w1, w2, w3 = w[b], w[b + my], w[b + 1], w[b + my + 1]
-    return (
-        w1 - w0 + half * (px[b] + px[b + my]),
-        w3 - w2 + half * (px[b + 1] + px[b + my + 1]),
-        w2 - w0 + half * (py[b] + py[b + 1]),
-        w3 - w1 + half * (py[b + my] + py[b + my + 1]),
+        cell=zeros(m, np.int64),
+        corner=zeros(m, np.int64),
+        axis=zeros((2, m)),
+        damage=zeros((m, LAYERS, 2)),
+        crushed=zeros((m, LAYERS, 2)),
+        slip=zeros((m, LAYERS)),
+        shear_slip=zeros((m, 4)),
+        thrust=zeros((m, 2)),
+        membrane=zeros((4, m)),
+        coupling=zeros((4, m)),
+        bending=zeros((4, m)),
+        offset=zeros((6, m)),
+        stiff=zeros((4, m)),
+        held=zeros((4, m)),
+        seen=zeros((6, m)),
+        constant=zeros(m),
+        force=zeros((4, 5, m)),
+        losses=zeros(len(LOSSES)),
     )
 
 
 @compiled(inline="always")
-def tangent_energy(k, en, et, eg, kn, kt, kg, cracks):
+def tangent_energy(k: int, e: Strain, cracks: Cracks) -> float:
     """Energy of the linear cell per area at a strain, without its constant [J/m2]."""
     m, c, b, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
-    E = 0.5 * (m[0, k] * en * en + m[2, k] * et * et + m[3, k] * eg * eg) + m[1, k] * en * et
-    E += 0.5 * (b[0, k] * kn * kn + b[2, k] * kt * kt + b[3, k] * kg * kg) + b[1, k] * kn * kt
-    E += c[0, k] * en * kn + c[1, k] * (en * kt + et * kn) + c[2, k] * et * kt + c[3, k] * eg * kg
-    E += o[0, k] * en + o[1, k] * et + o[2, k] * eg + o[3, k] * kn + o[4, k] * kt + o[5, k] * kg
+    E: float = 0.5 * (m[NN, k] * e.n * e.n + m[TT, k] * e.t * e.t + m[GG, k] * e.g * e.g) + m[NT, k] * e.n * e.t
+    E += 0.5 * (b[NN, k] * e.kn * e.kn + b[TT, k] * e.kt * e.kt + b[GG, k] * e.kg * e.kg) + b[NT, k] * e.kn * e.kt
+    E += c[NN, k] * e.n * e.kn + c[NT, k] * (e.n * e.kt + e.t * e.kn) + c[TT, k] * e.t * e.kt + c[GG, k] * e.g * e.kg
+    E += o[N_N, k] * e.n + o[N_T, k] * e.t + o[N_G, k] * e.g + o[M_N, k] * e.kn + o[M_T, k] * e.kt + o[M_G, k] * e.kg
     return E
 
 
 @compiled(inline="always")
-def resultants(k, en, et, eg, kn, kt, kg, cracks):
-    """N and M of the linear cell at a strain, in the axes of its crack [N/m], [N]."""
+def resultants(k: int, e: Strain, whole: float, cracks: Cracks) -> tuple[float, float, float, float, float, float]:
+    """N and M of the linear cell at a strain, in the axes of its crack [N/m], [N]; ``whole`` as in `crack_forces`."""
     m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
     return (
-        o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt,
-        o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt,
-        o[2, k] + m[3, k] * eg + u[3, k] * kg,
-        o[3, k] + u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt,
-        o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt,
-        o[5, k] + u[3, k] * eg + p[3, k] * kg,
+        whole * o[N_N, k] + m[NN, k] * e.n + m[NT, k] * e.t + u[NN, k] * e.kn + u[NT, k] * e.kt,
+        whole * o[N_T, k] + m[NT, k] * e.n + m[TT, k] * e.t + u[NT, k] * e.kn + u[TT, k] * e.kt,
+        whole * o[N_G, k] + m[GG, k] * e.g + u[GG, k] * e.kg,
+        whole * o[M_N, k] + u[NN, k] * e.n + u[NT, k] * e.t + p[NN, k] * e.kn + p[NT, k] * e.kt,
+        whole * o[M_T, k] + u[NT, k] * e.n + u[TT, k] * e.t + p[NT, k] * e.kn + p[TT, k] * e.kt,
+        whole * o[M_G, k] + u[GG, k] * e.g + p[GG, k] * e.kg,
     )
 
 
-@compiled(error_model="numpy")
-def evaluate(k, x, way, my, plate, law, cracks):
-    """Evaluates the law in cell k at the displacements x (5, nodes); the cell goes on with a new tangent.
-
-    ``way`` (5, nodes) is how far the nodes have come in the last sub-step. What leapfrog conserves has x of this and of
-    the last sub-step in its elastic energy, so a force that changes by df takes df . way / 2 beside the energy at x.
-    """
-    d, h, q = plate.d, plate.h, 0.5 / plate.d
-    b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
-    xx, xy, _ = gradients(b, my, q, x[0])
-    yx, yy, _ = gradients(b, my, q, x[1])
-    px, py, _ = gradients(b, my, q, x[3])
-    rx, ry, _ = gradients(b, my, q, x[4])
-    en, et, eg = turned(xx, yy, xy + yx, c, s)
-    kn, kt, kg = turned(px, ry, py + rx, c, s)
-    long = elongations(b, my, 0.5 * d, x)
-    before = cracks.constant[k] + d * d * tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
-    for i in range(4):
-        before += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
-    m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
-    old = resultants(k, en, et, eg, kn, kt, kg, cracks)
-    for i in range(4):
-        m[i, k] = u[i, k] = p[i, k] = 0.0
-    Nn = Nt = Ng = Mn = Mt = Mg = hold_n = hold_t = push_n = push_t = stored = 0.0
-    cracking = crushing = rubbing = 0.0
-    broken_n = broken_t = False
-    for i in range(LAYERS):
-        z, w = 0.5 * h * POINTS[i], h * WEIGHTS[i]
-        a = layer(
-            en + z * kn, et + z * kt, eg + z * kg, cracks.damage[k, i], cracks.crushed[k, i], cracks.slip[k, i], law
-        )
-        cracks.slip[k, i] = a.slip
-        Nn, Nt, Ng = Nn + w * a.s_n, Nt + w * a.s_t, Ng + w * a.tau
-        Mn, Mt, Mg = Mn + w * z * a.s_n, Mt + w * z * a.s_t, Mg + w * z * a.tau
-        j = 0
-        for t in (a.nn, a.nt, a.tt, a.gg):
-            m[j, k] += w * t
-            u[j, k] += w * z * t
-            p[j, k] += w * z * z * t
-            j += 1
-        stored, cracking = stored + w * a.stored, cracking + w * a.cracking
-        crushing, rubbing = crushing + w * a.crushing, rubbing + w * a.rubbing
-        D_n, D_t = cracks.damage[k, i, 0], cracks.damage[k, i, 1]
-        broken_n, broken_t = broken_n or D_n > 0.0, broken_t or D_t > 0.0
-        push_n, push_t = push_n + w * max(-a.s_n, 0.0), push_t + w * max(-a.s_t, 0.0)
-        hold_n, hold_t = hold_n + w * (1.0 - D_n) * law.cohesion, hold_t + w * (1.0 - D_t) * law.cohesion
-    cracks.thrust[k, 0], cracks.thrust[k, 1] = push_n, push_t
-    o[0, k] = Nn - (m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt)
-    o[1, k] = Nt - (m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt)
-    o[2, k] = Ng - (m[3, k] * eg + u[3, k] * kg)
-    o[3, k] = Mn - (u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt)
-    o[4, k] = Mt - (u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt)
-    o[5, k] = Mg - (u[3, k] * eg + p[3, k] * kg)
-    limit = math.inf
-    if broken_n:
-        limit = hold_n + law.mu * push_n
-    if broken_t:
-        limit = min(limit, hold_t + law.mu * push_t)
-    stored, rubbing = d * d * stored, d * d * rubbing
-    was = (
-        cracks.held[0, k] + cracks.stiff[0, k] * long[0],
-        cracks.held[1, k] + cracks.stiff[1, k] * long[1],
-        cracks.held[2, k] + cracks.stiff[2, k] * long[2],
-        cracks.held[3, k] + cracks.stiff[3, k] * long[3],
+@compiled(inline="always")
+def edge_forces(k: int, long: Edges, whole: float, cracks: Cracks) -> Edges:
+    """Of the edge springs at these elongations [N]; ``whole`` as in `crack_forces`."""
+    held, stiff = cracks.held, cracks.stiff
+    return (
+        whole * held[0, k] + stiff[0, k] * long[0],
+        whole * held[1, k] + stiff[1, k] * long[1],
+        whole * held[2, k] + stiff[2, k] * long[2],
+        whole * held[3, k] + stiff[3, k] * long[3],
     )
-    after = d * d * tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
+
+
+@compiled(inline="always")
+def edge_energy(k: int, long: Edges, energy: float, cracks: Cracks) -> float:
+    """``energy`` and that of the linear edge springs, without their constant [J]."""
     for i in range(4):
-        Q, K = plate.shear * (long[i] - cracks.shear_slip[k, i]), plate.shear
-        if abs(Q) > 0.5 * d * limit:
-            new = math.copysign(0.5 * d * limit, Q)
-            slipped = (Q - new) / plate.shear
-            rubbing += new * slipped
-            cracks.shear_slip[k, i], Q, K = cracks.shear_slip[k, i] + slipped, new, 0.0
-        stored += 0.5 * Q * Q / plate.shear
-        cracks.stiff[i, k], cracks.held[i, k] = K, Q - K * long[i]
-        after += (0.5 * K * long[i] + cracks.held[i, k]) * long[i]
-    cracks.constant[k] = stored - after
-    xx, xy, _ = gradients(b, my, q, way[0])
-    yx, yy, _ = gradients(b, my, q, way[1])
-    px, py, _ = gradients(b, my, q, way[3])
-    rx, ry, _ = gradients(b, my, q, way[4])
-    dn, dt, dg = turned(xx, yy, xy + yx, c, s)
-    before += 0.5 * d * d * ((Nn - old[0]) * dn + (Nt - old[1]) * dt + (Ng - old[2]) * dg)
-    dn, dt, dg = turned(px, ry, py + rx, c, s)
-    before += 0.5 * d * d * ((Mn - old[3]) * dn + (Mt - old[4]) * dt + (Mg - old[5]) * dg)
-    more = elongations(b, my, 0.5 * d, way)
-    for i in range(4):
-        before += 0.5 * (cracks.held[i, k] + cracks.stiff[i, k] * long[i] - was[i]) * more[i]
-    lost = cracks.losses
-    lost[0] += d * d * cracking
-    lost[1] += d * d * crushing
-    lost[2] += rubbing
-    lost[3] += before - stored - d * d * (cracking + crushing) - rubbing
-    return stored
+        energy += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
+    return energy

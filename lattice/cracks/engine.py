@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from lattice.cracks.cells import HOURGLASS, Plate
+from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
 from lattice.cracks.law import CrackLaw
-from lattice.cracks.march import march_cracked
-from lattice.cracks.motion import crack_forces, energies, evaluate_at, give
+from lattice.cracks.march import Stretch, march_cracked
+from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give
 from lattice.cracks.state import LayeredCells
 from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
@@ -17,9 +19,6 @@ from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
-
-CORNERS = np.array([0, 5, 10, 15])  #: rows of `Cracks.force` at which the forces on nodes 0 to 3 begin
-
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
 #: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
@@ -31,27 +30,11 @@ class CrackingEngine(ExplicitEngine):
 
     _written = (*ExplicitEngine._written, "layered")
 
-    def __init__(
-        self,
-        grid: Grid,
-        ice: Ice,
-        springs: Springs,
-        window: float,
-        *,
-        law: CrackLaw,
-        held_in_plane: BoolArray,
-        damping: float = 0.0,
-        alpha: float = 0.0,
-        step: float | None = None,
-        scaling: float = 1.0,
-    ):
+    def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        self.layered, self.scaling = LayeredCells(law, plate), scaling
-        super().__init__(
-            grid, ice, springs, window, held_in_plane=held_in_plane, damping=damping, alpha=alpha, step=step,
-            scaling=scaling,
-        )  # fmt: skip
+        self.layered, self.scaling = LayeredCells(law, plate), float(options.get("scaling", 1.0))
+        super().__init__(grid, ice, springs, window, **options)
 
     def _critical_step(self) -> float:
         """As `ExplicitEngine`; with scaled inertia material damping is cut to `SLOW_DAMPING` of the undamped one.
@@ -65,33 +48,33 @@ class CrackingEngine(ExplicitEngine):
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""
-        made: Made = march_cracked(
-            steps, stride, self.motion, self.mesh, self.screen, load, touch, sums, self.layered.view()
-        )
+        stretch, layered = Stretch(steps, stride), self.layered.view()
+        made: Made = march_cracked(stretch, self.motion, self.mesh, self.screen, load, touch, sums, layered)
         return made
 
     def begin(self, cell: int, angle: float) -> float:
         """A cell becomes layered as it is now; returns the energy that its layers store [J]."""
         y, v = (a.reshape(5, -1) for a in self.motion)
         k = self.layered.add(cell, self._corner(cell), angle)
-        room, my = self.mesh.scratch, self.motion.y.shape[2]
+        room, layered = self.mesh.scratch, self.layered.view()
         x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
-        stored = float(evaluate_at(k, my, y, v, self.alpha, self.dt, x, way, self.layered.view()))
-        losses = self.layered.view().cells.losses
-        losses[-1] += stored  # what the springs of the cell had is booked by whoever takes them away
+        nodes = Nodes(y, v, x, way, self.motion.y.shape[2], self.alpha, self.dt)
+        stored = float(evaluate_at(k, nodes, layered))
+        layered.cells.losses[SWITCHING] += stored  # what the springs of the cell had is booked by who takes them away
         return stored
 
     def _corner(self, cell: int) -> int:
         i, j = divmod(cell, self.grid.ny - 1)
-        return i * self.motion.y.shape[2] + j
+        my: int = self.motion.y.shape[2]
+        return i * my + j
 
     def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
         mesh, trial, layered = self.mesh, Motion(now.y, now.v.copy()), self.layered.view()
-        crack_forces(layered.count, now.y.shape[2], now.y.reshape(5, -1), 1.0, layered.plate, layered.cells)
+        crack_forces(layered.used, now.y.shape[2], now.y.reshape(5, -1), 1.0, layered.plate, layered.cells)
         sweep(trial, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
         for f in forces:
             push(f.row, f.column, f.force, trial, mesh.kick, mesh.pace.go)
-        give(layered.count, trial, mesh.kick, mesh.pace.go, layered.cells)
+        give(layered.used, trial, mesh.kick, mesh.pace.go, layered.cells)
         return trial.v
 
     # ---- what others ask of the layered cells -----------------------------------------------------------------
@@ -106,15 +89,15 @@ class CrackingEngine(ExplicitEngine):
     def _energies(self, u: Array, q: Array) -> Array:
         layered, x = self.layered.view(), np.zeros_like(self.motion.y)
         self.put(x, np.hstack((u, q)))
-        each: Array = energies(layered.count, x.shape[2], x.reshape(5, -1), layered.plate, layered.cells)
+        each: Array = energies(layered.used, x.shape[2], x.reshape(5, -1), layered.plate, layered.cells)
         return each
 
     def pull(self, held: BoolArray) -> float:
         """Force along x that nodes in ``held`` (nodes,) need against the layered cells now [N]."""
         layered, y = self.layered.view(), self.motion.y
-        crack_forces(layered.count, y.shape[2], y.reshape(5, -1), 1.0, layered.plate, layered.cells)
+        crack_forces(layered.used, y.shape[2], y.reshape(5, -1), 1.0, layered.plate, layered.cells)
         on = held[self.grid.cell_nodes[self.layered.cell]]  # (count, 4)
-        return -float((layered.cells.force[CORNERS + U_X, : layered.count].T * on).sum())
+        return -float((layered.cells.force[:, U_X, : layered.used].T * on).sum())
 
     @property
     def crack_losses(self) -> dict[str, float]:

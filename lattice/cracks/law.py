@@ -7,7 +7,8 @@ grows by the damage D, but in tension only, so that a crack that closes carries 
 
 D follows from the strain q = sigma_n / (E a_n), what the stress of the other axis adds taken off, such that the stress
 goes down on a straight line from sigma_t at e_0 = sigma_t / E to zero at e_f = w_c / d, w_c = 2 G_f / sigma_t: a
-cohesive crack of fracture energy G_f in series with the elastic cell of size d (Hillerborg et al. 1976, Bazant and Oh 1983).
+cohesive crack of fracture energy G_f in series with the elastic cell of size d (Hillerborg et al. 1976, Bazant and
+Oh 1983).
 In compression the stress stays above -sigma_c; beyond it ice is crushed, a strain that stays. Shear along a crack is
 limited by what is left of the cohesion c and by Coulomb friction, and the slip stays:
 
@@ -23,7 +24,10 @@ import math
 from typing import NamedTuple
 
 from lattice.compiled import compiled
+from lattice.grid import Array
 from lattice.ice import Ice
+
+N, T = range(2)  #: axes of a crack, across it and along it: last index of damage and crushing
 
 
 class CrackLaw(NamedTuple):
@@ -67,7 +71,7 @@ class Layer(NamedTuple):
 
 
 @compiled(inline="always")
-def damage_of(q, law):
+def damage_of(q: float, law: CrackLaw) -> float:
     """Damage at the strain q > e_0 across a crack: linear softening."""
     if q >= law.e_f:
         return 1.0
@@ -75,7 +79,7 @@ def damage_of(q, law):
 
 
 @compiled(inline="always")
-def stiffness_shares(x_n, x_t, D_n, D_t, nu):
+def stiffness_shares(x_n: float, x_t: float, D_n: float, D_t: float, nu: float) -> tuple[float, float]:
     """(a_n, a_t) of the law at the elastic strains (x_n, x_t): 1 - D where the stress is tension, else 1."""
     a_n, a_t = 1.0, 1.0
     for _ in range(2):
@@ -85,9 +89,9 @@ def stiffness_shares(x_n, x_t, D_n, D_t, nu):
 
 
 @compiled(inline="always")
-def normal_energy(s_n, s_t, a_n, a_t, law):
+def normal_energy(s_n: float, s_t: float, a_n: float, a_t: float, law: CrackLaw) -> float:
     """Elastic energy of the normal stresses [J/m3]; a crack without stiffness stores none."""
-    stored = -law.nu * s_n * s_t / law.E
+    stored: float = -law.nu * s_n * s_t / law.E
     if a_n > 0.0:
         stored += 0.5 * s_n * s_n / (law.E * a_n)
     if a_t > 0.0:
@@ -96,18 +100,18 @@ def normal_energy(s_n, s_t, a_n, a_t, law):
 
 
 @compiled(inline="always")
-def tension(x_n, x_t, damage, law):
+def tension(x_n: float, x_t: float, damage: Array, law: CrackLaw) -> tuple[float, float, float, float, float]:
     """Stresses at elastic strains; ``damage`` (2,) grows as the law asks. Also (a_n, a_t) and the energy it took."""
     nu = law.nu
-    a_n, a_t = stiffness_shares(x_n, x_t, damage[0], damage[1], nu)
+    a_n, a_t = stiffness_shares(x_n, x_t, damage[N], damage[T], nu)
     f = law.E / (1.0 - nu * nu * a_n * a_t)
     s_n, s_t = f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n)
     q_n, q_t, took = x_n + nu * s_t / law.E, x_t + nu * s_n / law.E, 0.0
-    D_n = max(damage[0], damage_of(q_n, law) if q_n > law.e_0 else 0.0)
-    D_t = max(damage[1], damage_of(q_t, law) if q_t > law.e_0 else 0.0)
-    if D_n > damage[0] or D_t > damage[1]:
+    D_n = max(damage[N], damage_of(q_n, law) if q_n > law.e_0 else 0.0)
+    D_t = max(damage[T], damage_of(q_t, law) if q_t > law.e_0 else 0.0)
+    if D_n > damage[N] or D_t > damage[T]:
         took = normal_energy(s_n, s_t, a_n, a_t, law)
-        damage[0], damage[1] = D_n, D_t
+        damage[N], damage[T] = D_n, D_t
         a_n, a_t = stiffness_shares(x_n, x_t, D_n, D_t, nu)
         f = law.E / (1.0 - nu * nu * a_n * a_t)
         s_n, s_t = f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n)
@@ -116,7 +120,7 @@ def tension(x_n, x_t, damage, law):
 
 
 @compiled(inline="always")
-def crushing_of(x_n, x_t, a_n, a_t, law):
+def crushing_of(x_n: float, x_t: float, a_n: float, a_t: float, law: CrackLaw) -> tuple[float, float, float, float]:
     """Stresses of a layer that is crushed, and the strain by which it is: across n, across t, else across both.
 
     The stress returns to the box of both strengths by the shortest way in energy (associated flow), which is along the
@@ -135,25 +139,25 @@ def crushing_of(x_n, x_t, a_n, a_t, law):
 
 
 @compiled(error_model="numpy")
-def layer(eps_n, eps_t, gamma, damage, crushed, slip, law):
+def layer(eps_n: float, eps_t: float, gamma: float, damage: Array, crushed: Array, slip: float, law: CrackLaw) -> Layer:
     """A layer at these strains. ``damage`` and ``crushed`` (2,) for n and t are its states, which follow in place."""
     E, nu = law.E, law.nu
-    s_n, s_t, a_n, a_t, cracking = tension(eps_n - crushed[0], eps_t - crushed[1], damage, law)
+    s_n, s_t, a_n, a_t, cracking = tension(eps_n - crushed[N], eps_t - crushed[T], damage, law)
     f = E / (1.0 - nu * nu * a_n * a_t)
     nn, nt, tt, crushing = f * a_n, f * nu * a_n * a_t, f * a_t, 0.0
     if s_n < -law.sigma_c or s_t < -law.sigma_c:
-        s_n, s_t, p_n, p_t = crushing_of(eps_n - crushed[0], eps_t - crushed[1], a_n, a_t, law)
+        s_n, s_t, p_n, p_t = crushing_of(eps_n - crushed[N], eps_t - crushed[T], a_n, a_t, law)
         crushing = -law.sigma_c * (p_n + p_t)
-        crushed[0], crushed[1] = crushed[0] + p_n, crushed[1] + p_t
+        crushed[N], crushed[T] = crushed[N] + p_n, crushed[T] + p_t
         nn, nt, tt = 0.0 if p_n < 0.0 else E * a_n, 0.0, 0.0 if p_t < 0.0 else E * a_t
     G = 0.5 * E / (1.0 + nu)
     tau, gg, rubbing = G * (gamma - slip), G, 0.0
-    if damage[0] > 0.0 or damage[1] > 0.0:
+    if damage[N] > 0.0 or damage[T] > 0.0:
         limit = math.inf
-        if damage[0] > 0.0:
-            limit = (1.0 - damage[0]) * law.cohesion + law.mu * max(-s_n, 0.0)
-        if damage[1] > 0.0:
-            limit = min(limit, (1.0 - damage[1]) * law.cohesion + law.mu * max(-s_t, 0.0))
+        if damage[N] > 0.0:
+            limit = (1.0 - damage[N]) * law.cohesion + law.mu * max(-s_n, 0.0)
+        if damage[T] > 0.0:
+            limit = min(limit, (1.0 - damage[T]) * law.cohesion + law.mu * max(-s_t, 0.0))
         if abs(tau) > limit:
             new = math.copysign(limit, tau)
             moved = (tau - new) / G
@@ -161,4 +165,6 @@ def layer(eps_n, eps_t, gamma, damage, crushed, slip, law):
                 cracking += 0.5 * G * moved * moved
             slip, rubbing, gg, tau = slip + moved, new * moved, 0.0, new
     stored = normal_energy(s_n, s_t, a_n, a_t, law) + 0.5 * tau * tau / G
-    return Layer(s_n, s_t, tau, nn, nt, tt, gg, slip, stored, cracking, crushing, rubbing)
+    return Layer(
+        s_n, s_t, tau, nn, nt, tt, gg, slip, stored=stored, cracking=cracking, crushing=crushing, rubbing=rubbing
+    )

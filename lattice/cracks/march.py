@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from lattice.compiled import compiled
-from lattice.cracks.cells import Cracks, Plate
-from lattice.cracks.law import CrackLaw
-from lattice.cracks.motion import crack_forces, give, renew
+from lattice.cracks.motion import Layered, Nodes, crack_forces, give, renew
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import Mesh, Motion, Pace
@@ -15,13 +13,11 @@ from lattice.explicit.march import contact_force, dissipated, half_power
 from lattice.explicit.screen import Screen, overloaded
 
 
-class Layered(NamedTuple):
-    """The layered cells of a sheet with their law."""
+class Stretch(NamedTuple):
+    """Sub-steps in one go."""
 
-    count: int
-    cells: Cracks
-    plate: Plate
-    law: CrackLaw
+    steps: int
+    stride: int  #: damping is taken stock of in each of so many
 
 
 @compiled(nogil=True)
@@ -31,17 +27,16 @@ def damped(motion: Motion, mesh: Mesh, layered: Layered) -> None:
     room.before[:] = motion.v
     room.after[:] = motion.v
     room.y[:] = pace.alpha * motion.v
-    crack_forces(layered.count, my, room.y.reshape(5, -1), 0.0, layered.plate, cells)
+    crack_forces(layered.used, my, room.y.reshape(5, -1), 0.0, layered.plate, cells)
     water = Pace(0.0, 0.0, 0.0, pace.drag + pace.alpha * pace.buoy)  # dt c / (rho h)
     trial = Motion(room.y, room.after)
     sweep(trial, mesh.intact, mesh.kick, mesh.springs, water, mesh.rows)
-    give(layered.count, trial, mesh.kick, 0.0, cells)
+    give(layered.used, trial, mesh.kick, 0.0, cells)
 
 
 @compiled(nogil=True)
 def march_cracked(
-    steps: int,
-    stride: int,
+    stretch: Stretch,
     motion: Motion,
     mesh: Mesh,
     screen: Screen,
@@ -51,25 +46,26 @@ def march_cracked(
     layered: Layered,
 ) -> Made:
     """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
-    pace, contact_work, loss, cells, my = mesh.pace, 0.0, 0.0, layered.cells, motion.y.shape[2]
-    y, v, dt = motion.y.reshape(5, -1), motion.v.reshape(5, -1), pace.go - pace.alpha
-    x, way = mesh.scratch.before.reshape(5, -1), mesh.scratch.after.reshape(5, -1)
-    for step in range(steps):
+    pace, room, contact_work, loss = mesh.pace, mesh.scratch, 0.0, 0.0
+    cells, my, y = layered.cells, motion.y.shape[2], motion.y.reshape(5, -1)
+    x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
+    nodes = Nodes(y, motion.v.reshape(5, -1), x, way, my, pace.alpha, pace.go - pace.alpha)
+    for step in range(stretch.steps):
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
-        renew(my, y, v, pace.alpha, dt, x, way, layered)
-        if step % stride == 0:
+        renew(nodes, layered)
+        if step % stretch.stride == 0:
             damped(motion, mesh, layered)
-        crack_forces(layered.count, my, y, 1.0, layered.plate, cells)
+        crack_forces(layered.used, my, y, 1.0, layered.plate, cells)
         contact_work += half_power(load, touch, sums, motion.v)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
         push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
         push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
-        give(layered.count, motion, mesh.kick, pace.go, cells)
+        give(layered.used, motion, mesh.kick, pace.go, cells)
         contact_work += half_power(load, touch, sums, motion.v)
-        if step % stride == 0:
-            loss += dissipated(motion.v, mesh.scratch.before, mesh.scratch.after, mesh.mass)
+        if step % stretch.stride == 0:
+            loss += dissipated(motion.v, room.before, room.after, mesh.mass)
         count = overloaded(motion, mesh.threshold, screen, pace.alpha)
         if count > 0:
             return Made(step + 1, count, contact_work, loss)
-    return Made(steps, 0, contact_work, loss)
+    return Made(stretch.steps, 0, contact_work, loss)

@@ -2,136 +2,148 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.cracks.cells import MOVED, WIDE, elongations, evaluate, gradients, tangent_energy, turned, turned_back
+from lattice.cracks.cells import (
+    E_X,
+    E_Y,
+    G_XY,
+    K_X,
+    K_XY,
+    K_Y,
+    MOVED,
+    WIDE,
+    Cracks,
+    Plate,
+    edge_energy,
+    edge_forces,
+    resultants,
+    tangent_energy,
+)
+from lattice.cracks.evaluate import evaluate
+from lattice.cracks.kinematics import elongations, strain_of, turned, turned_back
+from lattice.cracks.law import CrackLaw
+from lattice.explicit.layout import PHI_X, PHI_Y, U_X, U_Y, Motion, PerNode, W
+from lattice.grid import Array
+
+
+class Layered(NamedTuple):
+    """The layered cells of a sheet with their law."""
+
+    used: int  #: how many; the rest of ``cells`` is room
+    cells: Cracks
+    plate: Plate
+    law: CrackLaw
+
+
+class Nodes(NamedTuple):
+    """The nodes in rows, one after the other, as cells look at them; (5, nodes) each."""
+
+    y: Array  #: effective displacement x + alpha v
+    v: Array  #: velocity
+    x: Array  #: room for displacements
+    way: Array  #: room for what they were in the last sub-step
+    my: int  #: places in a row
+    alpha: float  #: material damping [s]
+    dt: float  #: sub-step [s]
 
 
 @compiled(inline="always")
-def moved(k, my, y, plate, law, cracks):
+def moved(k: int, my: int, y: Array, layered: Layered) -> bool:
     """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
-    b, q, half, s = cracks.corner[k], 0.5 / plate.d, 0.5 * plate.h, cracks.seen
-    wide = max(abs(s[0, k]) + half * abs(s[3, k]), abs(s[1, k]) + half * abs(s[4, k]))
-    far = MOVED * (law.e_0 + WIDE * wide)
-    xx, xy, _ = gradients(b, my, q, y[0])
-    yx, yy, _ = gradients(b, my, q, y[1])
-    px, py, _ = gradients(b, my, q, y[3])
-    rx, ry, _ = gradients(b, my, q, y[4])
-    a = abs(xx - s[0, k]) + half * abs(px - s[3, k])
-    c = abs(yy - s[1, k]) + half * abs(ry - s[4, k])
-    g = abs(xy + yx - s[2, k]) + half * abs(py + rx - s[5, k])
+    plate, s = layered.plate, layered.cells.seen
+    half = 0.5 * plate.h
+    wide = max(abs(s[E_X, k]) + half * abs(s[K_X, k]), abs(s[E_Y, k]) + half * abs(s[K_Y, k]))
+    far: float = MOVED * (layered.law.e_0 + WIDE * wide)
+    e, _ = strain_of(layered.cells.corner[k], my, 0.5 / plate.d, y)
+    a: float = abs(e.n - s[E_X, k]) + half * abs(e.kn - s[K_X, k])
+    c: float = abs(e.t - s[E_Y, k]) + half * abs(e.kt - s[K_Y, k])
+    g: float = abs(e.g - s[G_XY, k]) + half * abs(e.kg - s[K_XY, k])
     return a > far or c > far or g > far
 
 
 @compiled(nogil=True)
-def renew(my, y, v, alpha, dt, x, way, layered):
+def renew(nodes: Nodes, layered: Layered) -> int:
     """Evaluates the law in every cell whose strain has moved, at the displacements y - alpha v; how many."""
     evaluated = 0
-    for k in range(layered.count):
-        if moved(k, my, y, layered.plate, layered.law, layered.cells):
-            evaluate_at(k, my, y, v, alpha, dt, x, way, layered)
+    for k in range(layered.used):
+        if moved(k, nodes.my, nodes.y, layered):
+            evaluate_at(k, nodes, layered)
             evaluated += 1
     return evaluated
 
 
 @compiled(nogil=True)
-def evaluate_at(k, my, y, v, alpha, dt, x, way, layered):
-    """Evaluates the law in cell k at y - alpha v; its energy [J]. ``x`` and ``way`` (5, nodes) are room."""
-    cracks, q = layered.cells, 0.5 / layered.plate.d
-    b = cracks.corner[k]
+def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
+    """Evaluates the law in cell k at y - alpha v; its energy [J]."""
+    cracks, my = layered.cells, nodes.my
+    b, s = cracks.corner[k], cracks.seen
     for c in range(5):
         for n in (b, b + my, b + 1, b + my + 1):
-            x[c, n] = y[c, n] - alpha * v[c, n]
-            way[c, n] = dt * v[c, n]
-    s = cracks.seen
-    s[0, k], xy, _ = gradients(b, my, q, y[0])
-    yx, s[1, k], _ = gradients(b, my, q, y[1])
-    s[3, k], py, _ = gradients(b, my, q, y[3])
-    rx, s[4, k], _ = gradients(b, my, q, y[4])
-    s[2, k], s[5, k] = xy + yx, py + rx
-    return evaluate(k, x, way, my, layered.plate, layered.law, cracks)
+            nodes.x[c, n] = nodes.y[c, n] - nodes.alpha * nodes.v[c, n]
+            nodes.way[c, n] = nodes.dt * nodes.v[c, n]
+    e, _ = strain_of(b, my, 0.5 / layered.plate.d, nodes.y)
+    s[E_X, k], s[E_Y, k], s[G_XY, k] = e.n, e.t, e.g
+    s[K_X, k], s[K_Y, k], s[K_XY, k] = e.kn, e.kt, e.kg
+    stored: float = evaluate(k, nodes.x, nodes.way, my, layered.plate, layered.law, cracks)
+    return stored
 
 
 @compiled(nogil=True)
-def crack_forces(count, my, y, whole, plate, cracks):
-    """Forces of the first ``count`` cells on their nodes at the effective displacements y (5, nodes).
+def crack_forces(used: int, my: int, y: Array, whole: float, plate: Plate, cracks: Cracks) -> None:
+    """Forces of the first ``used`` cells on their nodes at the effective displacements y (5, nodes).
 
     ``whole`` is 1; 0 leaves out what the cells carry without strain, so that y = alpha v gives their damping.
     """
-    q, half, f = 0.5 / plate.d, 0.5 * plate.d, 0.5 * plate.d
+    q, half, f, F = 0.5 / plate.d, 0.5 * plate.d, 0.5 * plate.d, cracks.force
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
-    m, u, p, o, F = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset, cracks.force
-    for k in range(count):
+    for k in range(used):
         b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
-        xx, xy, hx = gradients(b, my, q, y[0])
-        yx, yy, hy = gradients(b, my, q, y[1])
-        px, py, tx = gradients(b, my, q, y[3])
-        rx, ry, ty = gradients(b, my, q, y[4])
-        en, et, eg = turned(xx, yy, xy + yx, c, s)
-        kn, kt, kg = turned(px, ry, py + rx, c, s)
-        Nn = whole * o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt
-        Nt = whole * o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt
-        Ng = whole * o[2, k] + m[3, k] * eg + u[3, k] * kg
-        Mn = whole * o[3, k] + u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt
-        Mt = whole * o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt
-        Mg = whole * o[5, k] + u[3, k] * eg + p[3, k] * kg
+        e, h = strain_of(b, my, q, y)
+        Nn, Nt, Ng, Mn, Mt, Mg = resultants(k, turned(e, c, s), whole, cracks)
         N1, N2, N3 = turned_back(Nn, Nt, Ng, c, s)
         M1, M2, M3 = turned_back(Mn, Mt, Mg, c, s)
-        l0, l1, l2, l3 = elongations(b, my, half, y)
-        Q0, Q1 = (
-            whole * cracks.held[0, k] + cracks.stiff[0, k] * l0,
-            whole * cracks.held[1, k] + cracks.stiff[1, k] * l1,
-        )
-        Q2, Q3 = (
-            whole * cracks.held[2, k] + cracks.stiff[2, k] * l2,
-            whole * cracks.held[3, k] + cracks.stiff[3, k] * l3,
-        )
+        Q0, Q1, Q2, Q3 = edge_forces(k, elongations(b, my, half, y), whole, cracks)
         # nodes 0 (-, -), 1 (+, -), 2 (-, +), 3 (+, +)
-        F[0, k], F[5, k] = f * (N1 + N3 - H * hx), f * (-N1 + N3 + H * hx)
-        F[10, k], F[15, k] = f * (N1 - N3 + H * hx), f * (-N1 - N3 - H * hx)
-        F[1, k], F[6, k] = f * (N2 + N3 - H * hy), f * (N2 - N3 + H * hy)
-        F[11, k], F[16, k] = f * (-N2 + N3 + H * hy), f * (-N2 - N3 - H * hy)
-        F[2, k], F[7, k], F[12, k], F[17, k] = Q0 + Q2, Q3 - Q0, Q1 - Q2, -Q1 - Q3
-        F[3, k], F[8, k] = f * (M1 + M3 - R * tx - Q0), f * (-M1 + M3 + R * tx - Q0)
-        F[13, k], F[18, k] = f * (M1 - M3 + R * tx - Q1), f * (-M1 - M3 - R * tx - Q1)
-        F[4, k], F[9, k] = f * (M2 + M3 - R * ty - Q2), f * (M2 - M3 + R * ty - Q3)
-        F[14, k], F[19, k] = f * (-M2 + M3 + R * ty - Q2), f * (-M2 - M3 - R * ty - Q3)
+        F[0, U_X, k], F[1, U_X, k] = f * (N1 + N3 - H * h.x), f * (-N1 + N3 + H * h.x)
+        F[2, U_X, k], F[3, U_X, k] = f * (N1 - N3 + H * h.x), f * (-N1 - N3 - H * h.x)
+        F[0, U_Y, k], F[1, U_Y, k] = f * (N2 + N3 - H * h.y), f * (N2 - N3 + H * h.y)
+        F[2, U_Y, k], F[3, U_Y, k] = f * (-N2 + N3 + H * h.y), f * (-N2 - N3 - H * h.y)
+        F[0, W, k], F[1, W, k], F[2, W, k], F[3, W, k] = Q0 + Q2, Q3 - Q0, Q1 - Q2, -Q1 - Q3
+        F[0, PHI_X, k], F[1, PHI_X, k] = f * (M1 + M3 - R * h.tx - Q0), f * (-M1 + M3 + R * h.tx - Q0)
+        F[2, PHI_X, k], F[3, PHI_X, k] = f * (M1 - M3 + R * h.tx - Q1), f * (-M1 - M3 - R * h.tx - Q1)
+        F[0, PHI_Y, k], F[1, PHI_Y, k] = f * (M2 + M3 - R * h.ty - Q2), f * (M2 - M3 + R * h.ty - Q3)
+        F[2, PHI_Y, k], F[3, PHI_Y, k] = f * (-M2 + M3 + R * h.ty - Q2), f * (-M2 - M3 - R * h.ty - Q3)
 
 
 @compiled(nogil=True)
-def give(count, motion, kick, go, cracks):
+def give(used: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) -> None:
     """Adds the forces of `crack_forces` to a sub-step that has been made."""
     F, my, ny = cracks.force, motion.y.shape[2], kick.u.shape[1]
     y, v = motion.y.reshape(5, -1), motion.v.reshape(5, -1)
     u, w, phi = kick.u.reshape(-1), kick.w.reshape(-1), kick.phi.reshape(-1)
-    for k in range(count):
+    for k in range(used):
         b = cracks.corner[k]
         at = b // my * ny + b % my
-        for n, g, r in ((b, at, 0), (b + my, at + ny, 5), (b + 1, at + 1, 10), (b + my + 1, at + ny + 1, 15)):
+        for n, g, r in ((b, at, 0), (b + my, at + ny, 1), (b + 1, at + 1, 2), (b + my + 1, at + ny + 1, 3)):
             for c in range(5):
-                dv = (u[g] if c < 2 else w[g] if c == 2 else phi[g]) * F[r + c, k]
+                dv = (u[g] if c < W else w[g] if c == W else phi[g]) * F[r, c, k]
                 v[c, n] += dv
                 y[c, n] += go * dv
 
 
 @compiled(nogil=True)
-def energies(count, my, x, plate, cracks):
-    """Energy of each of the first ``count`` cells at the displacements x (5, nodes), with that of its hourglass modes."""
-    out, q, half = np.empty(count), 0.5 / plate.d, 0.5 * plate.d
+def energies(used: int, my: int, x: Array, plate: Plate, cracks: Cracks) -> Array:
+    """Energy of each of the first ``used`` cells at displacements x (5, nodes), hourglass modes included."""
+    out, q, half = np.empty(used), 0.5 / plate.d, 0.5 * plate.d
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
-    for k in range(count):
-        b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
-        xx, xy, hx = gradients(b, my, q, x[0])
-        yx, yy, hy = gradients(b, my, q, x[1])
-        px, py, tx = gradients(b, my, q, x[3])
-        rx, ry, ty = gradients(b, my, q, x[4])
-        en, et, eg = turned(xx, yy, xy + yx, c, s)
-        kn, kt, kg = turned(px, ry, py + rx, c, s)
-        E = tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
-        E += 0.5 * (H * (hx * hx + hy * hy) + R * (tx * tx + ty * ty))
-        out[k] = cracks.constant[k] + plate.d * plate.d * E
-        long = elongations(b, my, half, x)
-        for i in range(4):
-            out[k] += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
+    for k in range(used):
+        b = cracks.corner[k]
+        e, h = strain_of(b, my, q, x)
+        E = tangent_energy(k, turned(e, cracks.axis[0, k], cracks.axis[1, k]), cracks)
+        E += 0.5 * (H * (h.x * h.x + h.y * h.y) + R * (h.tx * h.tx + h.ty * h.ty))
+        out[k] = edge_energy(k, elongations(b, my, half, x), cracks.constant[k] + plate.d * plate.d * E, cracks)
     return out

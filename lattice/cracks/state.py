@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
+from typing import Any
 
-from lattice.cracks.cells import LOSSES, WEIGHTS, Cracks, Plate, room_for
-from lattice.cracks.law import CrackLaw
-from lattice.cracks.march import Layered
+import numpy as np
+from numpy.typing import NDArray
+
+from lattice.cracks.cells import E_X, E_Y, G_XY, LOSSES, WEIGHTS, Cracks, Plate, room_for
+from lattice.cracks.law import CrackLaw, N
+from lattice.cracks.motion import Layered
 from lattice.grid import Array, BoolArray, IntArray
 
 
@@ -20,7 +24,7 @@ class LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
         new = object.__new__(LayeredCells)
         new.__dict__.update(vars(self))
-        new._cracks = Cracks(*(a.copy() for a in self._cracks))
+        new._cracks = Cracks._make(a.copy() for a in self._cracks)
         return new
 
     def view(self) -> Layered:
@@ -32,8 +36,8 @@ class LayeredCells:
         if self.count == len(self._cracks.cell):
             self._grow()
         k, c = self.count, self._cracks
-        for array in c[:-1]:  # all but the losses
-            array[(k,) if array.shape[0] == len(c.cell) else (slice(None), k)] = 0
+        for array in self._by_cell():
+            array[k] = 0
         c.cell[k], c.corner[k], c.axis[:, k] = cell, corner, (np.cos(angle), np.sin(angle))
         self.count += 1
         return k
@@ -44,14 +48,16 @@ class LayeredCells:
             b[tuple(slice(0, n) for n in a.shape)] = a
         self._cracks = new
 
+    def _by_cell(self) -> Iterator[NDArray[Any]]:
+        """All arrays of the cells, with the cell as first index; not the losses, which are sums."""
+        m = len(self._cracks.cell)
+        return (np.moveaxis(a, a.shape.index(m), 0) for a in self._cracks[:-1])
+
     def drop(self, gone: BoolArray) -> None:
         """Forgets the cells marked in ``gone`` (count,); the others keep their order."""
-        stay, m = np.flatnonzero(~gone), len(self._cracks.cell)
-        for a in self._cracks[:-1]:
-            if a.shape[0] == m:
-                a[: len(stay)] = a[stay]
-            else:
-                a[:, : len(stay)] = a[:, stay]
+        stay = np.flatnonzero(~gone)
+        for array in self._by_cell():
+            array[: len(stay)] = array[stay]
         self.count = len(stay)
 
     # ---- what the cells are like ------------------------------------------------------------------------------
@@ -70,25 +76,27 @@ class LayeredCells:
     @property
     def depth(self) -> Array:
         """Share of the thickness that is cracked through, across n, (count,)."""
-        return np.asarray((self._cracks.damage[: self.count, :, 0] >= 1.0) @ np.array(WEIGHTS))
+        return np.asarray((self._cracks.damage[: self.count, :, N] >= 1.0) @ np.array(WEIGHTS))
 
     @property
     def thrust(self) -> Array:
         """Compression across n and t, (count, 2) [N/m]."""
-        return self._cracks.thrust[: self.count]
+        thrust: Array = self._cracks.thrust[: self.count]
+        return thrust
 
     @property
     def angle(self) -> Array:
         """Direction n from the x axis, (count,) [rad]."""
         c, s = self._cracks.axis[:, : self.count]
-        return np.arctan2(s, c)
+        angle: Array = np.arctan2(s, c)
+        return angle
 
     def parting(self, d: float) -> tuple[BoolArray, Array, Array]:
         """Across n and t, (count, 2) each: cracked through; opening of the middle and slip [m] of cells of size d."""
         c, n = self._cracks, self.count
-        through: BoolArray = (c.damage[:n] >= 1.0).all(axis=1)
+        through = np.asarray((c.damage[:n] >= 1.0).all(axis=1))
         cos, sin = c.axis[:, :n]
-        e11, e22, g12 = c.seen[:3, :n]
+        e11, e22, g12 = (c.seen[i, :n] for i in (E_X, E_Y, G_XY))
         opening = np.stack(
             (cos**2 * e11 + sin**2 * e22 + cos * sin * g12, sin**2 * e11 + cos**2 * e22 - cos * sin * g12), axis=1
         )

@@ -1,0 +1,1 @@
+"""Cases of `cosim verify` on cracks that close: thrust, friction, softening, and sheets that stand on them."""

@@ -1,0 +1,111 @@
+"""Cases of `cosim verify` on cracks that close: short versions always, the full ones when slow tests run."""
+
+import numpy as np
+import pytest
+
+from cosim.verify import cases
+from cosim.verify.cracks import arch, centre_crack, friction, hinged_ring, thrust, wedge_beams
+
+CASES = ("crack-thrust", "crack-friction", "crack-arch", "beam-test", "wedge-beams", "hinged-ring", "centre-crack")
+
+
+def missed(result):
+    return [(q.name, q.value, q.reference) for q in result.quantities if q.passed is False]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_cracks_meet_their_references(case):
+    result = cases.run(case, quick=True)[0]
+    assert not missed(result)
+    assert sum(q.reference is not None for q in result.quantities) >= 2
+    assert result.figures
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_cracks_meet_their_references_in_full(case):
+    assert not missed(cases.run(case)[0])
+
+
+@pytest.mark.parametrize(
+    "settings", [{"sigma_c": 8.0e6, "curvature": 2.0e-2}, {"h": 1.0, "d": 1.0, "curvature": 2.0e-2}]
+)
+def test_the_moment_of_a_thrust_in_other_ice(settings):
+    assert not missed(cases.run("crack-thrust", settings)[0])
+
+
+def test_a_hinge_at_middle_thickness_is_rejected(monkeypatch):
+    """The wrong twin: a section whose thrust goes through its middle has no arm."""
+    right = thrust.cell_section
+    monkeypatch.setattr(thrust, "cell_section", lambda strain, p: (right(strain, p)[0], 0.0))
+    names = [name for name, *_ in missed(cases.run("crack-thrust")[0])]
+    assert names == ["moment, cell of the lattice", "moment, cell against many layers"]
+
+
+def test_friction_without_a_state_makes_energy():
+    """The wrong twin: a loop gives energy, where the law takes."""
+    assert friction.twin_loop(friction.PARAMETERS) < 0.0
+    assert friction.layer_loop(friction.PARAMETERS, 400)[2] > 0.0
+
+
+def test_a_segment_as_wide_at_its_hinge_as_at_its_rim_is_rejected(monkeypatch):
+    """The wrong twin: the same mean width, but straight."""
+
+    def straight(p, L):
+        return 0.5 * L * (p["a"] + 0.5 * L) * np.array([2.0, 1.0]) / 3.0 * scale(p)
+
+    def scale(p):
+        return 2.0 * np.tan(np.radians(p["psi"])) * 1006.0 * 9.81 * p["w"]
+
+    monkeypatch.setattr(hinged_ring, "exact", straight)
+    assert missed(cases.run("hinged-ring", quick=True)[0])
+
+
+def test_an_arch_whose_hinges_bear_no_thrust_does_not_stand(monkeypatch):
+    """The wrong twin: cracks at both ends and midspan that carry nothing leave a mechanism."""
+    p = {**arch.PARAMETERS, "block": 6, "w": [0.05]}
+    standing = arch.lattice_arch(p, 4.0e6, 4.0).force[-1]
+    monkeypatch.setattr(arch.CrackingEngine, "begin", lambda *_: 0.0)
+    lying = arch.lattice_arch(p, 4.0e6, 4.0).force[-1]
+    assert standing > 1e6
+    assert abs(lying) < 0.02 * standing
+
+
+def test_small_rotations_leave_the_arch_its_arm():
+    """The force of the elastic arch goes on in proportion to w, past w = 0.42 h where a real one snaps through."""
+    p = {**arch.PARAMETERS, "w": [0.6]}
+    found = arch.lattice_arch(p, np.inf, 12.0)
+    half, whole = (np.interp(s * 0.6 * p["h"], found.w, found.force) for s in (0.5, 1.0))
+    assert whole == pytest.approx(2.0 * half, rel=0.05)
+
+
+def test_what_a_closed_crack_carries_is_the_same_on_two_meshes():
+    """And with sides that are not held in the plane the crack finds less thrust."""
+    p = {**centre_crack.PARAMETERS, "length": 100.0, "w": 0.2}
+    coarse, fine = (centre_crack.pushed(p, n, "closing").force[-5] for n in (20, 30))
+    assert coarse == pytest.approx(fine, rel=0.1)
+    free = centre_crack.pushed({**p, "sides": "free"}, 20, "closing").force[-5]
+    assert free < 0.99 * coarse
+
+
+def test_wedges_bear_in_proportion_to_their_angle_and_to_their_strength():
+    p = {**wedge_beams.PARAMETERS, "d": 3.0}
+    narrow, wide = (wedge_beams.loads_of_lattice(p, angle) for angle in (8.0, 16.0))
+    assert wide[0] / narrow[0] == pytest.approx(wide[2] / narrow[2], rel=0.03)
+    strong = wedge_beams.loads_of_lattice({**p, "strength": 2.0 * p["strength"]}, 8.0)
+    assert strong[0] == pytest.approx(2.0 * narrow[0])
+
+
+@pytest.mark.parametrize(
+    ("case", "settings", "words"),
+    [
+        ("crack-thrust", {"thrust": [1.5]}, "between 0 and 1"),
+        ("crack-friction", {"amplitude": 1e-5}, "does not slip back"),
+        ("centre-crack", {"nodes": [41]}, "even numbers"),
+        ("centre-crack", {"sides": "loose"}, "held or free"),
+    ],
+)
+def test_parameters_that_make_no_sense_get_one_line(case, settings, words):
+    with pytest.raises(ValueError, match=words) as error:
+        cases.run(case, settings, quick=True)
+    assert "\n" not in str(error.value)
