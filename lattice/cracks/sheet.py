@@ -120,8 +120,11 @@ class CrackingSheet(ExplicitSheet):
     def retire(self, nodes: IntArray) -> None:
         """As `Floe.retire`."""
         super().retire(nodes)
-        gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
-        self.engine.layered.drop(gone)
+        self.engine.layered.drop(self._gone())
+
+    def _gone(self) -> BoolArray:
+        """Layered cells that have lost a node, (count,)."""
+        return np.asarray(~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1))
 
     def _parted(self) -> BoolArray:
         """Layered cells whose crack is through, pressed by nothing, and open or slipped by h/2, (count,)."""
@@ -140,14 +143,13 @@ class CrackingSheet(ExplicitSheet):
         if rotation.max() > TURNED:
             turned = rotation > 0.5 * TURNED
             corners = turned[self.grid.cell_nodes]
-            self._cut(corners.any(axis=1) & ~corners.all(axis=1), out)
+            self._cut(np.asarray(corners.any(axis=1) & ~corners.all(axis=1)), out)
         elif not self._parted().any():
             return
         self._release_loose(out, release, turned)
         if out.pieces:
             out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
-            gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
-            self.engine.layered.drop(gone)  # with the energy that `book_departure` has booked
+            self.engine.layered.drop(self._gone())  # with the energy that `book_departure` has booked
 
     def _cut(self, mask: BoolArray, out: Outcome) -> None:
         """Cells that part a piece which has turned too far carry nothing any more."""
