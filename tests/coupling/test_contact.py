@@ -171,3 +171,17 @@ def test_a_contact_set_back_has_its_damage_and_height_again():
     recall(saved)
     np.testing.assert_array_equal(law.height, height)
     np.testing.assert_array_equal(law.evaluate(2.5, np.zeros((1, 3)))[0], force)
+
+
+@pytest.mark.parametrize("degrees", [35.0, 45.0, 60.0])
+@pytest.mark.parametrize("part", [0.0, 1e-6, 0.5, 1.0 - 1e-6, 1.0 + 1e-6, 3.0])
+def test_the_contact_length_up_to_the_rim_of_the_ice(degrees, part):
+    """L / cos a until the whole face h / sin a bears, at L = h cot a; only a contact that can grow has a tangent."""
+    a = np.radians(degrees)
+    L = part * H / np.tan(a)
+    f, tangent = contact(plane_slope(a)).evaluate(L / 0.1, np.zeros((1, 3)))
+    length = min(part, 1.0) * H / np.sin(a)
+    assert -f[0, 0] == pytest.approx(P * 2.0 * length * (np.sin(a) + MU * np.cos(a)), rel=1e-9, abs=1e-9)
+    assert tangent.any() == (0.0 < part < 1.0)
+    if tangent.any():
+        assert -tangent[0, 0, 0] == pytest.approx(P * 2.0 / np.cos(a) * (np.sin(a) + MU * np.cos(a)), rel=1e-9)
