@@ -3,8 +3,9 @@
     uv run --with cosmic-ray python tests/benchmarks/mutants.py [--per-file 6] [--seed 10] [--only PART] [--again JSON]
 
 The sources are copied to a scratch folder; each mutant is put into a file there, and the few fast tests run that
-exercise this file (`FILES`). Of every operator of a file one mutant is taken, and of these a random sample. Left out:
-annotations, decorators and messages of errors, which no test should pin. ``--again`` runs the survivors of a result
+exercise this file (`FILES`). Of every place of a file one mutant is taken, and of these a random sample. Left out:
+annotations, decorators, messages of errors, which no test should pin, and operators of whole numbers put between
+floats, which no program survives. ``--again`` runs the survivors of a result
 once more, after tests were added.
 
 A mutant in a file with kernels is compiled anew (or runs as plain Python where its kernels allow that, ``plain``). The
@@ -158,13 +159,14 @@ def _judge_file(here: Path, m: Main, a: argparse.Namespace, wanted: set[tuple[st
 
 
 def _sample(items: list, source: Path, m: Main, a: argparse.Namespace) -> set[str]:
-    """Of every operator one mutant at random, then a random sample of these."""
+    """Of every place one mutant at random, then a random sample of these."""
     rng, out_of_bounds = random.Random(f"{a.seed} {m.file}"), _left_out(source)
     groups: dict[tuple, list] = {}
     for item in items:
         mutation = item.mutations[0]
-        if "RemoveDecorator" not in mutation.operator_name and mutation.start_pos[0] not in out_of_bounds:
-            kind = mutation.operator_name.split("/")[1].split("_")[0]
+        kind, *change = mutation.operator_name.split("/")[1].split("_")
+        crude = kind == "ReplaceBinaryOperator" and change[-1] not in ("Add", "Sub", "Mul", "Div")
+        if kind != "RemoveDecorator" and not crude and mutation.start_pos[0] not in out_of_bounds:
             groups.setdefault((*mutation.start_pos, kind), []).append(item)
     one = [rng.choice(groups[key]) for key in sorted(groups)]
     return {item.job_id for item in rng.sample(one, min(len(one), a.per_file, m.most))}

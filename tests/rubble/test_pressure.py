@@ -1,5 +1,7 @@
 """Pressure on one edge: force and moment against the integral over many small pieces."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -57,7 +59,7 @@ def test_an_edge_turns_counter_clockwise():
 def test_energy_of_the_water_is_the_depth_of_what_is_under_it(z):
     """A box of 4 x 2 m, turned by a quarter: rho g times the depth of each submerged part, per width."""
     box = [(-2.0, -1.0), (2.0, -1.0), (2.0, 1.0), (-2.0, 1.0), (-2.0, -1.0)]
-    edges = filled(EDGE, [[*a, *b, WIDTH, 0.0, 0.0, 0.0] for a, b in zip(box[:-1], box[1:], strict=True)])
+    edges = filled(EDGE, [[*a, *b, WIDTH, 0.0, 0.0, 0.0] for a, b in pairwise(box)])
     for angle, half_x, half_z in ((0.0, 2.0, 1.0), (np.pi / 2, 1.0, 2.0)):
         top = min(z + half_z, 0.0)
         exact = RHO_G * WIDTH * 2.0 * half_x * 0.5 * ((z - half_z) ** 2 - top**2)
