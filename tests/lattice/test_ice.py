@@ -1,5 +1,6 @@
 """What the ice gives beside its strengths: stiffness of the plate, and the limit beside a crack."""
 
+import dataclasses
 import math
 
 import pytest
@@ -44,3 +45,24 @@ def test_stiffness_of_the_plate_on_water():
     assert ICE.l_c == pytest.approx(math.sqrt(math.sqrt(8.7e9 * 27.0 / 10.92 / 9868.86)), rel=1e-12)
     assert ICE.freeboard == pytest.approx(480.0 / 1006.0, rel=1e-12)
     assert ICE.shear_stiffness == pytest.approx(5.0 / 5.7 * 8.7e9 / 2.6 * 3.0, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"nu": 0.34}, "use 0 to 1/3"),
+        ({"nu": -0.01}, "use 0 to 1/3"),
+        ({"h": 0.0}, "h = 0 must be greater than 0"),
+        ({"sigma_t": -1.0}, "sigma_t = -1 must be greater than 0"),
+        ({"rho_i": float("nan")}, "rho_i = nan must be"),
+        ({"sigma_spall": 0.0}, "must be negative"),
+    ],
+)
+def test_ice_that_cannot_be_is_refused(change, words):
+    with pytest.raises(ValueError, match=words):
+        dataclasses.replace(ICE, **change)
+
+
+@pytest.mark.parametrize("nu", [0.0, 1.0 / 3.0])
+def test_the_ends_of_poisson_s_ratio_are_allowed(nu):
+    assert dataclasses.replace(ICE, nu=nu).nu == nu
