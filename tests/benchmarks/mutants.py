@@ -54,7 +54,7 @@ class Main(NamedTuple):
 
 FILES = (
     Main("lattice/ice.py", "lattice/test_ice.py verification/test_failure_criteria.py"),
-    Main("lattice/grid.py", "lattice/test_fragments.py lattice/test_strain.py lattice/test_fronts.py"),
+    Main("lattice/grid.py", "lattice/test_grid.py lattice/test_fragments.py"),
     Main("lattice/fragments.py", "lattice/test_fragments.py"),
     Main("lattice/strain.py", "lattice/test_strain.py verification/test_failure_criteria.py", plain=True),
     Main("lattice/criteria/laws.py", "verification/test_failure_criteria.py lattice/test_criteria.py"),
