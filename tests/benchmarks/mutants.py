@@ -59,7 +59,7 @@ FILES = (
     Main("lattice/strain.py", "lattice/test_strain.py verification/test_failure_criteria.py", plain=True),
     Main("lattice/criteria/laws.py", "verification/test_failure_criteria.py lattice/test_criteria.py"),
     Main("lattice/criteria/mohr.py", "verification/test_failure_criteria.py", plain=True),
-    Main("lattice/criteria/crack_tips.py", "lattice/test_criteria.py"),
+    Main("lattice/criteria/crack_tips.py", "lattice/test_crack_tips.py"),
     Main("lattice/assembly.py", "lattice/test_fronts.py verification/test_plate_on_water.py"),
     Main("lattice/stiffness.py", "verification/test_plate_on_water.py verification/test_failure_criteria.py"),
     Main("lattice/contact.py", "lattice/test_contact_height.py coupling/test_front.py"),
