@@ -185,3 +185,13 @@ def test_the_contact_length_up_to_the_rim_of_the_ice(degrees, part):
     assert tangent.any() == (0.0 < part < 1.0)
     if tangent.any():
         assert -tangent[0, 0, 0] == pytest.approx(P * 2.0 / np.cos(a) * (np.sin(a) + MU * np.cos(a)), rel=1e-9)
+
+
+def test_points_of_a_node_that_do_not_touch_have_no_tangent():
+    """Part of the width lies ahead of a cone: the force grows along x by what the points in contact give."""
+    law = contact(cone(np.pi / 4, 15.0), 6.0, width=2.8)
+    L, _ = law.overlap(3.0, np.zeros((1, 3)))
+    assert L.min() == 0.0 < L.max()
+    step = np.array([[1e-6, 0.0, 0.0]])
+    slope = (law.evaluate(3.0, step)[0] - law.evaluate(3.0, -step)[0]) / 2e-6
+    np.testing.assert_allclose(law.evaluate(3.0, np.zeros((1, 3)))[1][0, :, 0], slope[0], rtol=1e-6)
