@@ -195,3 +195,16 @@ def test_points_of_a_node_that_do_not_touch_have_no_tangent():
     step = np.array([[1e-6, 0.0, 0.0]])
     slope = (law.evaluate(3.0, step)[0] - law.evaluate(3.0, -step)[0]) / 2e-6
     np.testing.assert_allclose(law.evaluate(3.0, np.zeros((1, 3)))[1][0, :, 0], slope[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("t", "bears"), [(0.01, True), (5.0, False)])
+def test_ice_that_is_not_crushing_stiffens_with_the_closure(t, bears):
+    """E / d per metre on top of the length that grows; at the strength the length alone."""
+    law, step = crushing(), np.array([[1e-7, 0.0, 0.0]])
+    tangent = law.evaluate(t, np.zeros((1, 3)))[1]
+    slope = (law.evaluate(t, step)[0] - law.evaluate(t, -step)[0]) / 2e-7
+    np.testing.assert_allclose(tangent[0, :, 0], slope[0], rtol=1e-6)
+    length_alone = (
+        law.pressure(np.full((1, 8), 0.1 * t), np.array([0]))[0][0, 0] * np.sqrt(2.0) * 2.0 * 1.1 / np.sqrt(2.0)
+    )
+    assert (-tangent[0, 0, 0] > 1.9 * length_alone) == bears
