@@ -81,7 +81,7 @@ FILES = (
     Main("rubble/prism.py", "rubble/test_prism.py rubble/test_water.py"),
     Main("rubble/block.py", "rubble/test_prism.py rubble/test_water.py rubble/test_crushing.py"),
     Main("rubble/physics.py", "rubble/test_physics.py"),
-    Main("rubble/cut.py", "rubble/test_facets.py rubble/test_phases.py", most=3),
+    Main("rubble/cut.py", "rubble/test_cut.py", most=3),
     Main("rubble/phases.py", "rubble/test_phases.py", most=4),
     Main("rubble/pressure.py", "rubble/test_pressure.py", most=5),
     Main("rubble/water.py", "rubble/test_water.py", most=4),
