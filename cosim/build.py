@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from cosim.observer import RunInfo
+from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
+from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, RubbleParticipant, Structure
 from coupling.ledger import Ledger
@@ -17,7 +20,7 @@ from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble
 from coupling.steering import ByPower, Steering, fixed
-from coupling.structure import DEEP, cone, plane_slope
+from lattice.criteria.table import chosen
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
 from lattice.grid import Grid
@@ -80,21 +83,14 @@ def build_ice(scenario: Scenario) -> Ice:
         rho_i=i.density,
         rho_w=w.density,
         g=w.gravity,
-        sigma_t=i.tensile_strength,
-        sigma_f=i.flexural_strength,
-        sigma_c=i.compressive_strength,
         beam_test=test,
+        **{field: sign * value for key, (field, sign) in STRENGTHS.items() if (value := getattr(i, key)) is not None},
     )
 
 
 def build_structure(scenario: Scenario) -> Structure:
     """The structure, by its kind."""
-    s = scenario.structure
-    if s.kind == "plane":
-        return plane_slope(
-            s.slope, top=s.top, toe_depth=DEEP if s.toe_depth is None else s.toe_depth, breaking=s.breaking
-        )
-    return cone(s.slope, s.waterline_radius, s.neck_radius, top=s.top, toe_depth=s.toe_depth, breaking=s.breaking)
+    return KINDS[scenario.structure.kind].build(scenario.structure)
 
 
 def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
@@ -110,10 +106,16 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     window, alpha = scenario.coupling.window, scenario.ice.material_damping
     springs = STIFFNESS_SETS[s.stiffness](ice)
+    common: dict[str, Any] = {
+        "held": held,
+        "damping": damping,
+        "alpha": alpha,
+        "criteria": chosen(scenario.fracture.criteria),
+    }
     if scenario.fracture.propagation == "dynamic":
-        return ExplicitSheet(grid, ice, springs, window, held=held, damping=damping, alpha=alpha)
+        return ExplicitSheet(grid, ice, springs, window, **common)
     windows = max(1, round(scenario.fracture.longest_step / window))
-    return Sheet(grid, ice, springs, window, held=held, damping=damping, alpha=alpha, long_step=windows)
+    return Sheet(grid, ice, springs, window, **common, long_step=windows)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:

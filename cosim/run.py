@@ -133,6 +133,7 @@ def event_json(e: Event) -> dict[str, Any]:
         "text": e.text,
         "length": e.length,
         "area": e.area,
+        "cause": e.cause,
     }
 
 

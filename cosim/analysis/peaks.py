@@ -70,6 +70,7 @@ def summary(run: RunData) -> dict[str, Any]:
                 "cells": e.cells,
                 "length": e.length,
                 "area": e.area,
+                "cause": e.cause,
             }
             for e in run.events
         ],

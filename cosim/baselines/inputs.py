@@ -28,7 +28,7 @@ class Given:
 def given(model: ScenarioModel) -> Given:
     """The formulas' case; what [baseline] does not hold has the defaults of this file."""
     i, s, water = model.ice, model.structure, model.water
-    wide = s.kind == "plane"
+    wide = s.waterline_radius is None
     width = float(model.sheet.width) if wide else 2.0 * s.waterline_radius
     defaults = _defaults(model)
     stated = {key: getattr(model.baseline, key) for key in defaults}

@@ -45,7 +45,8 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
 
 
 def _event(t_ns: int, m: Any) -> Event:
-    return Event(t_ns, m.kind, (m.fx, m.fy, m.fz), m.cells, (m.x, m.y, m.z), m.text, m.length, m.area)
+    force, place = (m.fx, m.fy, m.fz), (m.x, m.y, m.z)
+    return Event(t_ns, m.kind, force, m.cells, place, m.text, length=m.length, area=m.area, cause=m.cause)
 
 
 def _columns(times: IntArray, rows: list[tuple[int, dict[str, float]]]) -> dict[str, Array]:

@@ -50,6 +50,7 @@ def _build() -> dict[str, Any]:
             ("text", text),
             ("length", number),
             ("area", number),
+            ("cause", text),
         ],
     )
     _message(file, "Ledger", [("name", text), ("value", number)], repeated=("name", "value"))

@@ -42,7 +42,11 @@ def event(_info: RunInfo, item: Event) -> bytes:
     values = dict(zip(("fx", "fy", "fz", "x", "y", "z"), (*item.force, *item.position), strict=True))
     values |= {"length": item.length, "area": item.area}
     message = messages.Event(
-        kind=item.kind, cells=int(item.cells), text=item.text, **{name: float(value) for name, value in values.items()}
+        kind=item.kind,
+        cells=int(item.cells),
+        text=item.text,
+        cause=item.cause,
+        **{name: float(value) for name, value in values.items()},
     )
     messages.stamp(message.stamp, item.t_ns)
     return scenes.as_bytes(message)

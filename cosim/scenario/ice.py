@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from cosim.scenario.names import StiffnessSet
+from cosim.scenario.names import CriterionName, StiffnessSet
 from cosim.scenario.section import Coefficient, Section, fault
 from cosim.scenario.units import (
     Acceleration,
@@ -19,6 +19,7 @@ from cosim.scenario.units import (
     Stress,
     Time,
     TimeOrZero,
+    Toughness,
     Velocity,
 )
 
@@ -30,6 +31,13 @@ def _two_counts(value: object) -> object:
     return numbers
 
 
+def _some_names(value: object) -> object:
+    if not isinstance(value, list | tuple) or not value:
+        raise PydanticCustomError("quantity", 'at least one name in brackets, for example ["combined-tension"]')
+    return tuple(value)
+
+
+Criteria = Annotated[tuple[CriterionName, ...], BeforeValidator(_some_names)]
 NodeCounts = Annotated[tuple[int, int], BeforeValidator(_two_counts)]
 
 
@@ -42,6 +50,19 @@ class BeamTest(Section):
     factor: float = Field(0.75, gt=0, le=1)  #: f of (4.30) and (4.31), found by simulating the beam
 
 
+#: strengths of [ice]: the field of `lattice.ice.Ice`, and its sign there
+STRENGTHS: dict[str, tuple[str, float]] = {
+    "tensile_strength": ("sigma_t", 1.0),
+    "flexural_strength": ("sigma_f", 1.0),
+    "compressive_strength": ("sigma_c", 1.0),
+    "shear_strength": ("sigma_shear", 1.0),
+    "spalling_strength": ("sigma_spall", -1.0),
+    "upward_flexural_strength": ("sigma_f_upward", 1.0),
+    "downward_flexural_strength": ("sigma_f_downward", 1.0),
+    "fracture_toughness": ("K_IC", 1.0),
+}
+
+
 class Ice(Section):
     """[ice] The sheet's material; blocks have the same."""
 
@@ -52,7 +73,11 @@ class Ice(Section):
     tensile_strength: Stress  #: sigma_t, in-plane [Pa]
     flexural_strength: Stress  #: sigma_f; without a beam test also the limit beside a crack tip [Pa]
     compressive_strength: Stress  #: sigma_c, uniaxial; shapes the envelope (4.6) [Pa]
-    shear_strength: Stress  #: out of plane (thesis 5.3) [Pa]
+    shear_strength: Stress = None  #: sigma_s, out of plane (thesis 5.3) [Pa]
+    spalling_strength: Stress = None  #: magnitude of the sum of principal stresses at which ice spalls (4.9) [Pa]
+    upward_flexural_strength: Stress = None  #: sigma_f with the bottom in tension (4.15) [Pa]
+    downward_flexural_strength: Stress = None  #: sigma_f with the top in tension (4.16) [Pa]
+    fracture_toughness: Toughness = None  #: K_IC (4.23) [Pa m^0.5]
     material_damping: TimeOrZero = 0.0  #: alpha of 2.3.3, proportional to stiffness [s]
     beam_test: BeamTest | None = None
 
@@ -123,4 +148,6 @@ class Fracture(Section):
 
     #: quasi-static: implicit engine, cracks run between two windows; dynamic: explicit engine with waves and inertia
     propagation: Literal["quasi-static", "dynamic"] = "quasi-static"
+    #: by which the sheet's cells fail, the worst of them counts; the default is what the thesis judges in chapter 6
+    criteria: Criteria = ("combined-tension",)
     longest_step: Time = 0.2  #: longest step of the sheet while nothing fails and no rubble touches it [s]

@@ -9,7 +9,8 @@ from pydantic import model_validator
 from cosim.scenario.baseline import Baseline
 from cosim.scenario.case import Case, Recording
 from cosim.scenario.coupling import Coupling, nearest_multiples
-from cosim.scenario.ice import Drift, Fracture, Ice, Sheet, Water
+from cosim.scenario.ice import STRENGTHS, Drift, Fracture, Ice, Sheet, Water
+from cosim.scenario.names import strengths_of
 from cosim.scenario.rubble import Rubble
 from cosim.scenario.section import Section, fault
 from cosim.scenario.structure import Contact, Structure
@@ -55,6 +56,18 @@ class ScenarioModel(Section):
                 "initial rubble settles under the sheet, before a downward-breaking "
                 'structure; start an upward-breaking one without: "0 m^3"',
             )
+        return self
+
+    @model_validator(mode="after")
+    def _criteria_have_their_strengths(self) -> Self:
+        needed = strengths_of(self.fracture.criteria)
+        for key, (field, _) in STRENGTHS.items():
+            if field in needed and getattr(self.ice, key) is None:
+                raise fault(
+                    f"ice.{key}",
+                    f"missing; the failure criterion {needed[field]} needs it: "
+                    "add it, or leave the criterion out of fracture.criteria",
+                )
         return self
 
     @model_validator(mode="after")

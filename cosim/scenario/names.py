@@ -5,13 +5,16 @@ A table is imported when a name is checked, because listing scenarios needs no s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Annotated
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
 
 from cosim.nearest import hint
+
+if TYPE_CHECKING:
+    from cosim.structures import Kind
 
 
 def schemes() -> Iterable[str]:
@@ -35,6 +38,27 @@ def stiffness_sets() -> Iterable[str]:
     return STIFFNESS_SETS
 
 
+def kinds_of_structure() -> Mapping[str, Kind]:
+    """Kinds of structure, with the keys that each takes."""
+    from cosim.structures import KINDS
+
+    return KINDS
+
+
+def criteria() -> Iterable[str]:
+    """Failure criteria of the sheet."""
+    from lattice.criteria.table import CRITERIA
+
+    return CRITERIA
+
+
+def strengths_of(names: Iterable[str]) -> dict[str, str]:
+    """Fields of `lattice.ice.Ice` that criteria need, each with the first criterion that needs it."""
+    from lattice.criteria.table import chosen
+
+    return {field: criterion.name for criterion in reversed(chosen(names)) for field in criterion.needs}
+
+
 def one_of(table: Callable[[], Iterable[str]]) -> AfterValidator:
     """Refuses a name that the table does not hold, with the one that is meant most likely."""
 
@@ -48,4 +72,6 @@ def one_of(table: Callable[[], Iterable[str]]) -> AfterValidator:
 
 Scheme = Annotated[str, one_of(schemes)]
 StiffnessSet = Annotated[str, one_of(stiffness_sets)]
+StructureKind = Annotated[str, one_of(kinds_of_structure)]
+CriterionName = Annotated[str, one_of(criteria)]
 ContactModel = Annotated[str, one_of(contacts)]

@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 import math
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
-from cosim.scenario.names import ContactModel
+from cosim.scenario.names import ContactModel, StructureKind, kinds_of_structure
 from cosim.scenario.section import Coefficient, Section, fault
 from cosim.scenario.units import (
     Angle,
+    AngleOrZero,
     Length,
     Stress,
 )
 
+#: what a missing key may look like
+EXAMPLES = {"waterline_radius": '"15 m"', "neck_radius": '"9 m"', "sides": "6", "orientation": '"30 deg"'}
+
 
 class Structure(Section):
-    """[structure] A cone that narrows the way it breaks the ice, or an inclined plane."""
+    """[structure] A surface on which the ice breaks, and which of the measures describe it."""
 
-    kind: Literal["cone", "plane"]  #: shape of the surface; a plane is infinitely wide
+    kind: StructureKind  #: shape of the surface; a plane is infinitely wide
     breaking: Literal["downward", "upward"] = "downward"  #: which way the face bends the ice
     slope: Angle  #: from the horizontal [rad]
-    waterline_radius: Length = None  #: of a cone [m]
+    waterline_radius: Length = None  #: of a cone; of one with flat sides half the width across flats [m]
     neck_radius: Length = None  #: the cone narrows to this radius, beyond it stands a cylinder [m]
+    sides: Annotated[int, Field(ge=3)] | None = None  #: of a multi-sided cone
+    orientation: AngleOrZero = None  #: of its sides: 0 a flat side, 180 deg / sides a corner towards the ice [rad]
     toe_depth: Length = None  #: depth of the structure's lower end, below it nothing is touched [m]
     top: Length = 5.0  #: height of the structure above water; over a lower one ice may ride [m]
 
@@ -31,15 +37,22 @@ class Structure(Section):
     def _has_a_shape(self) -> Self:
         if self.slope >= math.pi / 2:
             raise fault("slope", "a slope lies between 0 and 90 deg")
-        if self.kind == "plane":
-            for key in ("waterline_radius", "neck_radius"):
-                if getattr(self, key) is not None:
-                    raise fault(key, 'a plane has no radius: remove the key or set kind = "cone"')
-        elif self.waterline_radius is None:
-            raise fault("waterline_radius", 'missing; a cone needs one, for example waterline_radius = "15 m"')
-        elif self.neck_radius is not None and self.neck_radius >= self.waterline_radius:
+        kind = kinds_of_structure()[self.kind]
+        for key, example in EXAMPLES.items():
+            given = getattr(self, key) is not None
+            if given and key not in kind.needs + kind.takes:
+                raise fault(key, f"a {self.kind} has none: remove the key or change structure.kind")
+            if not given and key in kind.needs:
+                raise fault(key, f"missing; a {self.kind} needs it, for example {key} = {example}")
+        return self
+
+    @model_validator(mode="after")
+    def _narrows_to_its_neck(self) -> Self:
+        if self.waterline_radius is None:
+            return self
+        if self.neck_radius is not None and self.neck_radius >= self.waterline_radius:
             raise fault("neck_radius", f"must be below the waterline radius of {self.waterline_radius:g} m")
-        elif self.breaking == "upward" and self.toe_depth is None:
+        if self.breaking == "upward" and self.toe_depth is None:
             raise fault(
                 "toe_depth",
                 "missing; an upward-breaking cone widens downwards to its rim: add its depth, "

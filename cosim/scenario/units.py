@@ -87,6 +87,7 @@ def _quantity(si: str, example: str, check: Callable[[float], float]) -> Any:
 
 # Types of the fields of a scenario: SI floats, read from strings with unit.
 Length = _quantity("m", "3 m", _above_zero)
+Toughness = _quantity("Pa*m^0.5", "110 kPa*m^0.5", _above_zero)
 Time = _quantity("s", "50 ms", _above_zero)
 TimeOrZero = _quantity("s", "1 ms", _at_least_zero)
 Velocity = _quantity("m/s", "0.1 m/s", _above_zero)
@@ -95,6 +96,7 @@ Density = _quantity("kg/m^3", "917 kg/m^3", _above_zero)
 Stress = _quantity("Pa", "750 kPa", _above_zero)
 Force = _quantity("N", "375 kN", _above_zero)
 Angle = _quantity("rad", "45 deg", _above_zero)
+AngleOrZero = _quantity("rad", "30 deg", _at_least_zero)
 StressOrZero = _quantity("Pa", "0 kPa", _at_least_zero)
 LengthOrZero = _quantity("m", "19 m", _at_least_zero)
 VolumeOrZero = _quantity("m^3", "3000 m^3", _at_least_zero)

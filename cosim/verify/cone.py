@@ -39,9 +39,8 @@ SOURCE = "equilibrium of a block on a cone in three dimensions"
 WIDTH, SIZE = 1.0, 1.0
 
 
-def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
-    """Measured and exact force on the structure (3,), mean over windows in which the block slides [N]."""
-    structure = cone(radians(p["slope"]), p["radius"], toe_depth=0.9 * p["radius"] * np.tan(radians(p["slope"])))
+def pressed_block(p: dict[str, Any], structure: Revolved, y: float) -> tuple[RubbleLayer, int, float]:
+    """A round block on the cone in the plane y that does not turn: its layer, its number, its buoyant lift [N]."""
     physics = RubblePhysics(
         rho_i=p["rho_i"],
         rho_w=p["rho_w"],
@@ -70,6 +69,13 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
     lift = (p["rho_w"] / p["rho_i"] - 1.0) * p["g"] * layer.mass
     lock_rotation(layer, number)
     thrust(layer, number, p["thrust"] * lift)
+    return layer, number, lift
+
+
+def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
+    """Measured and exact force on the structure (3,), mean over windows in which the block slides [N]."""
+    structure = cone(radians(p["slope"]), p["radius"], toe_depth=0.9 * p["radius"] * np.tan(radians(p["slope"])))
+    layer, number, lift = pressed_block(p, structure, y)
     measured, exact = [], []
     for _ in range(800):
         layer.block(number).y, layer.block(number).v_y = y, across
@@ -77,17 +83,9 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array]:
         layer.advance(1)
         now = layer.table()
         measured.append(now.load[0])
-        exact.append(
-            _statics(
-                p,
-                structure,
-                y,
-                0.5 * (before.position[0] + now.position[0])[[0, 2]],
-                0.5 * (before.velocity[0] + now.velocity[0]),
-                across,
-                lift,
-            )
-        )
+        centre = 0.5 * (before.position[0] + now.position[0])[[0, 2]]
+        velocity = 0.5 * (before.velocity[0] + now.velocity[0])
+        exact.append(_statics(p, structure, y, centre, velocity, across, lift))
     return np.mean(measured[100:], axis=0), np.mean(exact[100:], axis=0)
 
 

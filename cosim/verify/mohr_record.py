@@ -24,10 +24,10 @@ EVERY = 10  #: windows between two snapshots for the figure
 
 @dataclass(frozen=True)
 class Failure:
-    """A cell that fails: its circles, mean and radius at the top, then at the bottom (4,) [-] and its tensile limit then [Pa]."""
+    """A cell that fails."""
 
-    circle: Array
-    limit: float
+    circle: Array  #: mean and radius at the top, then at the bottom (4,) [-]
+    limit: float  #: its tensile limit then [Pa]
     located: bool  #: the first of its window; the others follow at the same instant
 
 
@@ -65,6 +65,7 @@ class Witness(Sheet):
         return found
 
     def fail(self, cells: Sequence[int], causes: Sequence[str], state: State, out: Outcome) -> None:
+        """Keep the states of these cells, then let them go."""
         for cell in cells:
             failure = Failure(self.circles(self._judged)[cell], float(self.limits()[cell]), self._located)
             self.failures.append(failure)

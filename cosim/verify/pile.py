@@ -39,8 +39,8 @@ def bin_of(width: float) -> list[Array]:
     return [solid(-width, -10, width, -8), solid(-width - 2, -200, -width, -8), solid(width, -200, width + 2, -8)]
 
 
-def run(p: dict[str, Any], quick: bool) -> CaseResult:
-    """Force on the bin and rest of the pile; ``quick``: 60 s."""
+def tumble(p: dict[str, Any]) -> RubbleLayer:
+    """Blocks at odd angles below the bin, about to float up."""
     physics = RubblePhysics(
         rho_i=p["rho_i"],
         rho_w=p["rho_w"],
@@ -66,7 +66,13 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
                 angle,
             ),
         )
-    layer.advance(round((60.0 if quick else p["time"]) / physics.substep))
+    return layer
+
+
+def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """Force on the bin and rest of the pile; ``quick``: 60 s."""
+    layer = tumble(p)
+    layer.advance(round((60.0 if quick else p["time"]) / layer.physics.substep))
     layer.advance(200)
     weight = layer.mass * (p["rho_w"] / p["rho_i"] - 1.0) * p["g"]
     force, table, energy = layer.load_on_structure.sum(axis=0), layer.table(), mechanical_energy(layer)

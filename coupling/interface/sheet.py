@@ -30,6 +30,7 @@ class Event:
     text: str  #: one line for people
     length: float = 0.0  #: of the piece along the drift, 0 if the event is about none [m]
     area: float = 0.0  #: of the piece [m2]
+    cause: str = ""  #: failure criteria by which the cells failed, in order, joined by commas; empty without cells
 
 
 @dataclass(frozen=True, slots=True)

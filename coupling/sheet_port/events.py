@@ -2,33 +2,46 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from coupling.interface import Array, Event, Fragment
 
 
+@dataclass(frozen=True)
+class Failed:
+    """Cells that failed in a window: how many, and by which criteria."""
+
+    cells: int
+    cause: str = ""  #: see `coupling.interface.Event`
+
+
+NONE = Failed(0)
+
+
 def event(
-    t_ns: int, kind: str, load: Array, cells: int, where: Array, text: str, length: float = 0.0, area: float = 0.0
+    t_ns: int, kind: str, load: Array, failed: Failed, where: Array, text: str, size: tuple[float, float] = (0.0, 0.0)
 ) -> Event:
-    """An event at ``where`` (3,) [m] under a load (3,) [N]; see `coupling.interface.Event`."""
+    """An event at ``where`` (3,) [m] under a load (3,) [N], about a piece of this length [m] and area [m2]."""
     force = (float(load[0]), float(load[1]), float(load[2]))
     place = (float(where[0]), float(where[1]), float(where[2]))
-    return Event(t_ns, kind, force, cells, place, text, length, area)
+    return Event(t_ns, kind, force, failed.cells, place, text, *size, failed.cause)
 
 
-def failures(t_ns: int, load: Array, cells: int, where: Array, parts: int | None, quiet: bool) -> list[Event]:
-    """``cells`` have failed about ``where``, after a quiet window or not; ``parts`` if there are more of them now."""
+def failures(t_ns: int, load: Array, failed: Failed, where: Array, parts: int | None, quiet: bool) -> list[Event]:
+    """Cells have failed about ``where``, after a quiet window or not; ``parts`` if there are more of them now."""
     events = []
     if quiet:
-        text = "1 cell fails" if cells == 1 else f"{cells} cells fail"
-        events.append(event(t_ns, "cell_failure", load, cells, where, text))
+        text = "1 cell fails" if failed.cells == 1 else f"{failed.cells} cells fail"
+        events.append(event(t_ns, "cell_failure", load, failed, where, text))
     if parts is not None:
-        events.append(event(t_ns, "split", load, cells, where, f"the floe splits, {parts} parts stay in the lattice"))
+        events.append(event(t_ns, "split", load, failed, where, f"the floe splits, {parts} parts stay in the lattice"))
     return events
 
 
-def departure(t_ns: int, load: Array, cells: int, f: Fragment, at_structure: bool) -> list[Event]:
-    """A piece leaves the lattice, in front of the structure or elsewhere, after ``cells`` have failed."""
+def departure(t_ns: int, load: Array, failed: Failed, f: Fragment, at_structure: bool) -> list[Event]:
+    """A piece leaves the lattice, in front of the structure or elsewhere, after cells have failed."""
     where = np.average(f.position, axis=0, weights=f.length * f.width)
     length = max(float(f.length[f.column == c].sum()) for c in np.unique(f.column))
     area = float((f.length * f.width).sum())
@@ -36,8 +49,8 @@ def departure(t_ns: int, load: Array, cells: int, f: Fragment, at_structure: boo
     events = []
     if at_structure:
         what = f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"
-        events.append(event(t_ns, "circumferential", load, cells, where, what, length, area))
-    return [*events, event(t_ns, "hand_over", load, cells, where, f"{text}, becomes rubble", length, area)]
+        events.append(event(t_ns, "circumferential", load, failed, where, what, (length, area)))
+    return [*events, event(t_ns, "hand_over", load, failed, where, f"{text}, becomes rubble", (length, area))]
 
 
 def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) -> Event:
@@ -50,4 +63,4 @@ def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) 
         f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "
         "from here on the linear foundation pulls it down with more than its weight"
     )
-    return event(t_ns, "out_of_water", load, 0, where, text)
+    return event(t_ns, "out_of_water", load, NONE, where, text)

@@ -33,14 +33,15 @@ class Watch:
     ) -> list[Event]:
         """Those of a window in which cells failed, with the time of the first failure and the load then."""
         assert out.failure is not None
-        t_ns, load, cells = round(out.failure[0] * NS), rubble_load - out.failure[1].sum(axis=0), len(out.failed)
+        t_ns, load = round(out.failure[0] * NS), rubble_load - out.failure[1].sum(axis=0)
+        failed = events.Failed(len(out.failed), ", ".join(dict.fromkeys(out.causes)))
         found = []
-        if cells:
+        if out.failed:
             where = self._motion.position(self._sheet.grid.cell_nodes[out.failed].ravel()).mean(axis=0)
             parts = out.parts if out.parts > parts_before else None
-            found += events.failures(t_ns, load, cells, where, parts, self._quiet)
+            found += events.failures(t_ns, load, failed, where, parts, self._quiet)
         for fragment, at_structure in left:
-            found += events.departure(t_ns, load, cells, fragment, at_structure)
+            found += events.departure(t_ns, load, failed, fragment, at_structure)
         return found
 
     def lifted_out(self, load: Array) -> list[Event]:
