@@ -60,12 +60,15 @@ def test_encounters_go_from_drop_to_drop():
     assert all(a.end + 1 == b.begin for a, b in itertools.pairwise(found))
 
 
-def test_pieces_that_follow_before_the_load_builds_up_belong_to_the_encounter():
+@pytest.mark.parametrize(("at", "which"), [(7.4, 0), (13.4, 1), (19.4, 2)])
+def test_pieces_that_follow_before_the_load_builds_up_belong_to_the_encounter(at, which):
     run = saw()
-    late = Event(round(7.4 * NS), "circumferential", (0.0, 0.0, 0.0), 3, (0.0, 0.0, 0.0), "", 1.0, 1.0)
-    found = encounters(dataclasses.replace(run, events=(*run.events[:2], late, *run.events[2:])))
+    late = Event(round(at * NS), "circumferential", (0.0, 0.0, 0.0), 3, (0.0, 0.0, 0.0), "", 1.0, 1.0)
+    found = encounters(dataclasses.replace(run, events=(*run.events, late)))
     assert [round(DT * (e.event + 1), 6) for e in found] == [7.0, 13.0, 19.0, 25.0]
-    assert found[0].end == round(7.4 / DT) - 1
+    without = encounters(run)
+    assert [k for k in range(4) if found[k].end != without[k].end] == [which]
+    assert found[which].end == round(at / DT) - 1
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 4])

@@ -69,6 +69,7 @@ def fault(*overrides: str) -> str:
         ("structure.kind=plane", ["structure.waterline_radius", "plane"]),
         ("structure.slope=95 deg", ["structure.slope", "0 and 90 deg"]),
         ("ice.density=1100 kg/m^3", ["ice.density", "sinks", "1006"]),
+        ("ice.density=1006 kg/m^3", ["ice.density", "sinks", "1006"]),
         ("rubble.iterations=0", ["rubble.iterations", "greater than or equal to 1"]),
         ("rubble.enabled=1", ["rubble.enabled", "boolean"]),
         ("contact.friction=inf", ["contact.friction", "finite"]),

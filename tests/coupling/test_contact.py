@@ -171,3 +171,40 @@ def test_a_contact_set_back_has_its_damage_and_height_again():
     recall(saved)
     np.testing.assert_array_equal(law.height, height)
     np.testing.assert_array_equal(law.evaluate(2.5, np.zeros((1, 3)))[0], force)
+
+
+@pytest.mark.parametrize("degrees", [35.0, 45.0, 60.0])
+@pytest.mark.parametrize("part", [0.0, 1e-6, 0.5, 1.0 - 1e-6, 1.0 + 1e-6, 3.0])
+def test_the_contact_length_up_to_the_rim_of_the_ice(degrees, part):
+    """L / cos a until the whole face h / sin a bears, at L = h cot a; only a contact that can grow has a tangent."""
+    a = np.radians(degrees)
+    L = part * H / np.tan(a)
+    f, tangent = contact(plane_slope(a)).evaluate(L / 0.1, np.zeros((1, 3)))
+    length = min(part, 1.0) * H / np.sin(a)
+    assert -f[0, 0] == pytest.approx(P * 2.0 * length * (np.sin(a) + MU * np.cos(a)), rel=1e-9, abs=1e-9)
+    assert tangent.any() == (0.0 < part < 1.0)
+    if tangent.any():
+        assert -tangent[0, 0, 0] == pytest.approx(P * 2.0 / np.cos(a) * (np.sin(a) + MU * np.cos(a)), rel=1e-9)
+
+
+def test_points_of_a_node_that_do_not_touch_have_no_tangent():
+    """Part of the width lies ahead of a cone: the force grows along x by what the points in contact give."""
+    law = contact(cone(np.pi / 4, 15.0), 6.0, width=2.8)
+    L, _ = law.overlap(3.0, np.zeros((1, 3)))
+    assert L.min() == 0.0 < L.max()
+    step = np.array([[1e-6, 0.0, 0.0]])
+    slope = (law.evaluate(3.0, step)[0] - law.evaluate(3.0, -step)[0]) / 2e-6
+    np.testing.assert_allclose(law.evaluate(3.0, np.zeros((1, 3)))[1][0, :, 0], slope[0], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("t", "bears"), [(0.01, True), (5.0, False)])
+def test_ice_that_is_not_crushing_stiffens_with_the_closure(t, bears):
+    """E / d per metre on top of the length that grows; at the strength the length alone."""
+    law, step = crushing(), np.array([[1e-7, 0.0, 0.0]])
+    tangent = law.evaluate(t, np.zeros((1, 3)))[1]
+    slope = (law.evaluate(t, step)[0] - law.evaluate(t, -step)[0]) / 2e-7
+    np.testing.assert_allclose(tangent[0, :, 0], slope[0], rtol=1e-6)
+    length_alone = (
+        law.pressure(np.full((1, 8), 0.1 * t), np.array([0]))[0][0, 0] * np.sqrt(2.0) * 2.0 * 1.1 / np.sqrt(2.0)
+    )
+    assert (-tangent[0, 0, 0] > 1.9 * length_alone) == bears

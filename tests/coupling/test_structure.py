@@ -112,3 +112,10 @@ def test_bad_input_is_refused_in_one_line(make, words):
     with pytest.raises(ValueError, match=words) as error:
         make()
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("structure", [cone(np.pi / 4, 15.0, top=5.0), plane_slope(np.pi / 4, top=5.0)])
+def test_over_the_top_nothing_overlaps_and_the_normal_is_against_the_drift(structure):
+    L, normal = structure.overlap(np.array([5.0]), np.zeros((1, 2)), np.array([5.1]))
+    assert not L.any()
+    np.testing.assert_array_equal(normal, [[[-1.0, 0.0, 0.0]] * 2])

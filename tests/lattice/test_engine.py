@@ -1,5 +1,7 @@
 """Implicit dynamics against closed forms: heave of a free floe, momentum, statics, order of convergence."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from lattice.contact import NoContact
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.implicit.engine import Engine
+from lattice.implicit.step import GAMMA, Step
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.state import State
@@ -112,3 +115,10 @@ def test_a_pulled_strip_breaks_at_its_tensile_strength():
         )
     assert failed[0] == 0
     assert failed[1] > 0
+
+
+def test_the_error_of_a_step_is_that_of_a_cubic_motion():
+    """x = c t^3 / 6: accelerations c gamma dt and c dt at the stages, so the local error is 0.040 c dt^3."""
+    dt, c = 0.05, np.array([[3.0, -7.0]])
+    stages = [SimpleNamespace(u_acc=c * part * dt, q_acc=np.array([[2.0, 99.0 * part, 0.0]])) for part in (GAMMA, 1.0)]
+    assert Step.error.fget(SimpleNamespace(dt=dt, stages=stages)) == pytest.approx(0.040 * 7.0 * dt**3, rel=1e-12)

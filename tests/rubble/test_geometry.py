@@ -85,3 +85,18 @@ def test_faces_between_parts_are_no_outer_faces():
     faces = plane(parts).faces
     assert not any(f["z0"] == f["z1"] == -5.0 for f in faces)
     assert len(faces) == 6
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [(0.0, 0.0), (1.0, 0.0)],
+        [(0.0,), (1.0,), (2.0,)],
+        [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)],
+        [0.0, 1.0, 2.0, 3.0],
+        [(0.0, 0.0), (1.0, 0.0), (np.nan, 1.0)],
+    ],
+)
+def test_what_is_no_polygon_is_refused(points):
+    with pytest.raises(ValueError, match="check the corners"):
+        contiguous(points)
