@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from lattice.cracks.cells import HOURGLASS, Plate
@@ -34,19 +36,12 @@ class CrackingEngine(ExplicitEngine):
         window: float,
         *,
         law: CrackLaw,
-        held_in_plane: BoolArray,
-        damping: float = 0.0,
-        alpha: float = 0.0,
-        step: float | None = None,
-        scaling: float = 1.0,
+        **options: Any,
     ):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
         self.layered = LayeredCells(law, plate)
-        super().__init__(
-            grid, ice, springs, window, held_in_plane=held_in_plane, damping=damping, alpha=alpha, step=step,
-            scaling=scaling,
-        )  # fmt: skip
+        super().__init__(grid, ice, springs, window, **options)
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""

@@ -6,8 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lattice.cracks.beam import Beam, layer_strength, standard_beam
+from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import law_of
-from lattice.cracks.sheet import CrackingSheet
+from lattice.cracks.sheet import PRINCIPAL, CrackingSheet
+from lattice.criteria.table import Criterion
+from lattice.explicit.engine import SubSteps
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.stiffness import Springs
@@ -29,9 +32,10 @@ class Measured:
 
 
 def cracking_sheet(
-    grid: Grid, ice: Ice, springs: Springs, window: float, measured: Measured, *, dynamic: bool = False, **options: Any
-) -> CrackingSheet:
-    """The sheet; ``dynamic`` keeps the true inertia of cracks, ``options`` as in `CrackingSheet`."""
+    grid: Grid, ice: Ice, springs: Springs, window: float, measured: Measured, *, dynamic: bool = False,
+    criteria: tuple[Criterion, ...] = PRINCIPAL, **options: Any,
+) -> CrackingSheet:  # fmt: skip
+    """The sheet; ``dynamic`` keeps the true inertia of cracks, ``options`` as in `CrackingEngine`."""
     strength = measured.strength
     if strength is None:
         beam = measured.beam or standard_beam(ice)
@@ -39,6 +43,7 @@ def cracking_sheet(
         strength = layer_strength(ice, measured.friction, measured.fracture_energy, beam, grid.d)
     layers = replace(ice, sigma_t=strength, sigma_f=strength, beam_test=None)
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
-    if not dynamic:
-        options = {"scaling": SCALING, "contact_time": CONTACT_TIME, **options}
-    return CrackingSheet(grid, layers, springs, window, law=law, **options)
+    if dynamic:
+        return CrackingSheet(CrackingEngine(grid, layers, springs, window, law=law, **options), criteria=criteria)
+    slow = CrackingEngine(grid, layers, springs, window, law=law, sub_steps=SubSteps(scaling=SCALING), **options)
+    return CrackingSheet(slow, contact_time=CONTACT_TIME, criteria=criteria)
