@@ -13,14 +13,12 @@ earlier or later than the tangent knew is booked as ``switching``.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre
 
 from lattice.compiled import compiled
-from lattice.cracks.law import layer
 from lattice.grid import Array, IntArray
 
 
@@ -38,6 +36,7 @@ MOVED = 0.02  #: change of a face's strain, as share of e_0, at which the law is
 #: share of the largest strain of a face that is added to e_0 there: in an open crack the place between the layers that
 #: touch and those that do not is then known to 0.2 % of the thickness
 WIDE = 0.1
+Triple = tuple[float, float, float]
 HOURGLASS = 0.05  #: stiffness of the modes without mean strain, as share of E h (in bending times h^2 / 12)
 
 
@@ -73,6 +72,28 @@ class Cracks(NamedTuple):
     losses: Array  #: (4,) cracking, crushing, rubbing, switching: sums over all cells [J]
 
 
+class Strain(NamedTuple):
+    """Mean strain and curvature of a cell in the axes of its crack; shear is engineering shear."""
+
+    n: float  #: across the crack [-]
+    t: float  #: along it
+    g: float  #: shear
+    kn: float  #: their slopes through the thickness, positive where the upper side is stretched [1/m]
+    kt: float
+    kg: float
+
+
+class Resultants(NamedTuple):
+    """Forces and moments of a cell per width in the axes of its crack."""
+
+    Nn: float  #: [N/m]
+    Nt: float
+    Ng: float
+    Mn: float  #: [N]
+    Mt: float
+    Mg: float
+
+
 LOSSES = ("cracking", "crushing", "rubbing", "switching")
 
 
@@ -80,34 +101,50 @@ def room_for(m: int) -> Cracks:
     """Room for m layered cells, none of them in use."""
     f = np.zeros
     return Cracks(
-        f(m, np.int64), f(m, np.int64), f((2, m)), f((m, LAYERS, 2)), f((m, LAYERS, 2)), f((m, LAYERS)), f((m, 4)),
-        f((m, 2)), f((4, m)), f((4, m)), f((4, m)), f((6, m)), f((4, m)), f((4, m)), f((6, m)), f(m), f((20, m)), f(4),
-    )  # fmt: skip
+        cell=f(m, np.int64),
+        corner=f(m, np.int64),
+        axis=f((2, m)),
+        damage=f((m, LAYERS, 2)),
+        crushed=f((m, LAYERS, 2)),
+        slip=f((m, LAYERS)),
+        shear_slip=f((m, 4)),
+        thrust=f((m, 2)),
+        membrane=f((4, m)),
+        coupling=f((4, m)),
+        bending=f((4, m)),
+        offset=f((6, m)),
+        stiff=f((4, m)),
+        held=f((4, m)),
+        seen=f((6, m)),
+        constant=f(m),
+        force=f((20, m)),
+        losses=f(4),
+    )
 
 
 @compiled(inline="always")
-def gradients(b, my, q, y):
+def gradients(b: int, my: int, q: float, y: Array) -> Triple:
     """d/dx, d/dy and the hourglass mode of one component y on the nodes of the cell at b."""
     A, B, C, D = y[b], y[b + my], y[b + 1], y[b + my + 1]
     return (B - A + D - C) * q, (C - A + D - B) * q, (A - B - C + D) * q
 
 
 @compiled(inline="always")
-def turned(e11, e22, g12, c, s):
+def turned(e11: float, e22: float, g12: float, c: float, s: float) -> Triple:
     """Strain (engineering shear) in axes turned by the angle of (c, s)."""
     cc, ss, cs = c * c, s * s, c * s
     return cc * e11 + ss * e22 + cs * g12, ss * e11 + cc * e22 - cs * g12, 2.0 * cs * (e22 - e11) + (cc - ss) * g12
 
 
 @compiled(inline="always")
-def turned_back(Nn, Nt, Ng, c, s):
+def turned_back(Nn: float, Nt: float, Ng: float, c: float, s: float) -> Triple:
     """Stress resultants in the axes of the sheet."""
     cc, ss, cs = c * c, s * s, c * s
     return cc * Nn + ss * Nt - 2.0 * cs * Ng, ss * Nn + cc * Nt + 2.0 * cs * Ng, cs * (Nn - Nt) + (cc - ss) * Ng
 
 
 @compiled(inline="always")
-def elongations(b, my, half, y):
+def elongations(b: int, my: int, half: float, y: Array) -> tuple[float, float, float, float]:
     """Of the edge springs 0-1, 2-3, 0-2, 1-3 [m]; y (5, nodes)."""
     w, px, py = y[2], y[3], y[4]
     w0, w1, w2, w3 = w[b], w[b + my], w[b + 1], w[b + my + 1]
@@ -120,9 +157,23 @@ def elongations(b, my, half, y):
 
 
 @compiled(inline="always")
-def tangent_energy(k, en, et, eg, kn, kt, kg, cracks):
+def strain_of(b: int, my: int, q: float, axis: tuple[float, float], y: Array) -> Strain:
+    """Mean strain and curvature of the cell at b in axes of cosine and sine ``axis``; y (5, nodes), q = 1 / 2d."""
+    c, s = axis
+    xx, xy, _ = gradients(b, my, q, y[0])
+    yx, yy, _ = gradients(b, my, q, y[1])
+    px, py, _ = gradients(b, my, q, y[3])
+    rx, ry, _ = gradients(b, my, q, y[4])
+    en, et, eg = turned(xx, yy, xy + yx, c, s)
+    kn, kt, kg = turned(px, ry, py + rx, c, s)
+    return Strain(en, et, eg, kn, kt, kg)
+
+
+@compiled(inline="always")
+def tangent_energy(k: int, e: Strain, cracks: Cracks) -> float:
     """Energy of the linear cell per area at a strain, without its constant [J/m2]."""
     m, c, b, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
+    en, et, eg, kn, kt, kg = e.n, e.t, e.g, e.kn, e.kt, e.kg
     E = 0.5 * (m[0, k] * en * en + m[2, k] * et * et + m[3, k] * eg * eg) + m[1, k] * en * et
     E += 0.5 * (b[0, k] * kn * kn + b[2, k] * kt * kt + b[3, k] * kg * kg) + b[1, k] * kn * kt
     E += c[0, k] * en * kn + c[1, k] * (en * kt + et * kn) + c[2, k] * et * kt + c[3, k] * eg * kg
@@ -131,10 +182,11 @@ def tangent_energy(k, en, et, eg, kn, kt, kg, cracks):
 
 
 @compiled(inline="always")
-def resultants(k, en, et, eg, kn, kt, kg, cracks):
-    """N and M of the linear cell at a strain, in the axes of its crack [N/m], [N]."""
+def resultants(k: int, e: Strain, cracks: Cracks) -> Resultants:
+    """N and M of the linear cell at a strain, in the axes of its crack."""
     m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
-    return (
+    en, et, eg, kn, kt, kg = e.n, e.t, e.g, e.kn, e.kt, e.kg
+    return Resultants(
         o[0, k] + m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt,
         o[1, k] + m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt,
         o[2, k] + m[3, k] * eg + u[3, k] * kg,
@@ -142,99 +194,3 @@ def resultants(k, en, et, eg, kn, kt, kg, cracks):
         o[4, k] + u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt,
         o[5, k] + u[3, k] * eg + p[3, k] * kg,
     )
-
-
-@compiled(error_model="numpy")
-def evaluate(k, x, way, my, plate, law, cracks):
-    """Evaluates the law in cell k at the displacements x (5, nodes); the cell goes on with a new tangent.
-
-    ``way`` (5, nodes) is how far the nodes have come in the last sub-step. What leapfrog conserves has x of this and of
-    the last sub-step in its elastic energy, so a force that changes by df takes df . way / 2 beside the energy at x.
-    """
-    d, h, q = plate.d, plate.h, 0.5 / plate.d
-    b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
-    xx, xy, _ = gradients(b, my, q, x[0])
-    yx, yy, _ = gradients(b, my, q, x[1])
-    px, py, _ = gradients(b, my, q, x[3])
-    rx, ry, _ = gradients(b, my, q, x[4])
-    en, et, eg = turned(xx, yy, xy + yx, c, s)
-    kn, kt, kg = turned(px, ry, py + rx, c, s)
-    long = elongations(b, my, 0.5 * d, x)
-    before = cracks.constant[k] + d * d * tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
-    for i in range(4):
-        before += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
-    m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
-    old = resultants(k, en, et, eg, kn, kt, kg, cracks)
-    for i in range(4):
-        m[i, k] = u[i, k] = p[i, k] = 0.0
-    Nn = Nt = Ng = Mn = Mt = Mg = hold_n = hold_t = push_n = push_t = stored = 0.0
-    cracking = crushing = rubbing = 0.0
-    broken_n = broken_t = False
-    for i in range(LAYERS):
-        z, w = 0.5 * h * POINTS[i], h * WEIGHTS[i]
-        a = layer(
-            en + z * kn, et + z * kt, eg + z * kg, cracks.damage[k, i], cracks.crushed[k, i], cracks.slip[k, i], law
-        )
-        cracks.slip[k, i] = a.slip
-        Nn, Nt, Ng = Nn + w * a.s_n, Nt + w * a.s_t, Ng + w * a.tau
-        Mn, Mt, Mg = Mn + w * z * a.s_n, Mt + w * z * a.s_t, Mg + w * z * a.tau
-        j = 0
-        for t in (a.nn, a.nt, a.tt, a.gg):
-            m[j, k] += w * t
-            u[j, k] += w * z * t
-            p[j, k] += w * z * z * t
-            j += 1
-        stored, cracking = stored + w * a.stored, cracking + w * a.cracking
-        crushing, rubbing = crushing + w * a.crushing, rubbing + w * a.rubbing
-        D_n, D_t = cracks.damage[k, i, 0], cracks.damage[k, i, 1]
-        broken_n, broken_t = broken_n or D_n > 0.0, broken_t or D_t > 0.0
-        push_n, push_t = push_n + w * max(-a.s_n, 0.0), push_t + w * max(-a.s_t, 0.0)
-        hold_n, hold_t = hold_n + w * (1.0 - D_n) * law.cohesion, hold_t + w * (1.0 - D_t) * law.cohesion
-    cracks.thrust[k, 0], cracks.thrust[k, 1] = push_n, push_t
-    o[0, k] = Nn - (m[0, k] * en + m[1, k] * et + u[0, k] * kn + u[1, k] * kt)
-    o[1, k] = Nt - (m[1, k] * en + m[2, k] * et + u[1, k] * kn + u[2, k] * kt)
-    o[2, k] = Ng - (m[3, k] * eg + u[3, k] * kg)
-    o[3, k] = Mn - (u[0, k] * en + u[1, k] * et + p[0, k] * kn + p[1, k] * kt)
-    o[4, k] = Mt - (u[1, k] * en + u[2, k] * et + p[1, k] * kn + p[2, k] * kt)
-    o[5, k] = Mg - (u[3, k] * eg + p[3, k] * kg)
-    limit = math.inf
-    if broken_n:
-        limit = hold_n + law.mu * push_n
-    if broken_t:
-        limit = min(limit, hold_t + law.mu * push_t)
-    stored, rubbing = d * d * stored, d * d * rubbing
-    was = (
-        cracks.held[0, k] + cracks.stiff[0, k] * long[0],
-        cracks.held[1, k] + cracks.stiff[1, k] * long[1],
-        cracks.held[2, k] + cracks.stiff[2, k] * long[2],
-        cracks.held[3, k] + cracks.stiff[3, k] * long[3],
-    )
-    after = d * d * tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
-    for i in range(4):
-        Q, K = plate.shear * (long[i] - cracks.shear_slip[k, i]), plate.shear
-        if abs(Q) > 0.5 * d * limit:
-            new = math.copysign(0.5 * d * limit, Q)
-            slipped = (Q - new) / plate.shear
-            rubbing += new * slipped
-            cracks.shear_slip[k, i], Q, K = cracks.shear_slip[k, i] + slipped, new, 0.0
-        stored += 0.5 * Q * Q / plate.shear
-        cracks.stiff[i, k], cracks.held[i, k] = K, Q - K * long[i]
-        after += (0.5 * K * long[i] + cracks.held[i, k]) * long[i]
-    cracks.constant[k] = stored - after
-    xx, xy, _ = gradients(b, my, q, way[0])
-    yx, yy, _ = gradients(b, my, q, way[1])
-    px, py, _ = gradients(b, my, q, way[3])
-    rx, ry, _ = gradients(b, my, q, way[4])
-    dn, dt, dg = turned(xx, yy, xy + yx, c, s)
-    before += 0.5 * d * d * ((Nn - old[0]) * dn + (Nt - old[1]) * dt + (Ng - old[2]) * dg)
-    dn, dt, dg = turned(px, ry, py + rx, c, s)
-    before += 0.5 * d * d * ((Mn - old[3]) * dn + (Mt - old[4]) * dt + (Mg - old[5]) * dg)
-    more = elongations(b, my, 0.5 * d, way)
-    for i in range(4):
-        before += 0.5 * (cracks.held[i, k] + cracks.stiff[i, k] * long[i] - was[i]) * more[i]
-    lost = cracks.losses
-    lost[0] += d * d * cracking
-    lost[1] += d * d * crushing
-    lost[2] += rubbing
-    lost[3] += before - stored - d * d * (cracking + crushing) - rubbing
-    return stored

@@ -8,8 +8,8 @@ import numpy as np
 
 from lattice.cracks.cells import HOURGLASS, Plate
 from lattice.cracks.law import CrackLaw
-from lattice.cracks.march import march_cracked
-from lattice.cracks.motion import crack_forces, energies, evaluate_at, give
+from lattice.cracks.march import CrackedLattice, march_cracked
+from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give
 from lattice.cracks.state import LayeredCells
 from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
@@ -45,10 +45,11 @@ class CrackingEngine(ExplicitEngine):
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""
-        made: Made = march_cracked(
-            steps, stride, self.motion, self.mesh, self.screen, load, touch, sums, self.layered.view()
-        )
+        made: Made = march_cracked(steps, stride, self.motion, self._lattice(), load, touch, sums)
         return made
+
+    def _lattice(self) -> CrackedLattice:
+        return CrackedLattice(self.mesh, self.screen, self.layered.view())
 
     def begin(self, cell: int, angle: float) -> float:
         """A cell becomes layered as it is now; returns the energy that its layers store [J]."""
@@ -56,7 +57,7 @@ class CrackingEngine(ExplicitEngine):
         k = self.layered.add(cell, self._corner(cell), angle)
         room, my = self.mesh.scratch, self.motion.y.shape[2]
         x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
-        stored = float(evaluate_at(k, my, y, v, self.alpha, self.dt, x, way, self.layered.view()))
+        stored = float(evaluate_at(k, Nodes(my, y, v, self.alpha, self.dt, x, way), self.layered.view()))
         losses = self.layered.view().cells.losses
         losses[-1] += stored  # what the springs of the cell had is booked by whoever takes them away
         return stored

@@ -7,9 +7,9 @@ grows by the damage D, but in tension only, so that a crack that closes carries 
 
 D follows from the strain q = sigma_n / (E a_n), what the stress of the other axis adds taken off, such that the stress
 goes down on a straight line from sigma_t at e_0 = sigma_t / E to zero at e_f = w_c / d, w_c = 2 G_f / sigma_t: a
-cohesive crack of fracture energy G_f in series with the elastic cell of size d (Hillerborg et al. 1976, Bazant and Oh 1983).
-In compression the stress stays above -sigma_c; beyond it ice is crushed, a strain that stays. Shear along a crack is
-limited by what is left of the cohesion c and by Coulomb friction, and the slip stays:
+cohesive crack of fracture energy G_f in series with the elastic cell of size d (Hillerborg et al. 1976, Bazant and Oh
+1983). In compression the stress stays above -sigma_c; beyond it ice is crushed, a strain that stays. Shear along a
+crack is limited by what is left of the cohesion c and by Coulomb friction, and the slip stays:
 
     |tau| <= (1 - D) c + mu |sigma_n|.
 
@@ -161,4 +161,7 @@ def layer(eps_n, eps_t, gamma, damage, crushed, slip, law):
                 cracking += 0.5 * G * moved * moved
             slip, rubbing, gg, tau = slip + moved, new * moved, 0.0, new
     stored = normal_energy(s_n, s_t, a_n, a_t, law) + 0.5 * tau * tau / G
-    return Layer(s_n, s_t, tau, nn, nt, tt, gg, slip, stored, cracking, crushing, rubbing)
+    return Layer(
+        s_n=s_n, s_t=s_t, tau=tau, nn=nn, nt=nt, tt=tt, gg=gg,
+        slip=slip, stored=stored, cracking=cracking, crushing=crushing, rubbing=rubbing,
+    )  # fmt: skip

@@ -45,5 +45,6 @@ def cracking_sheet(
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
     if dynamic:
         return CrackingSheet(CrackingEngine(grid, layers, springs, window, law=law, **options), criteria=criteria)
-    slow = CrackingEngine(grid, layers, springs, window, law=law, sub_steps=SubSteps(scaling=SCALING), **options)
-    return CrackingSheet(slow, contact_time=CONTACT_TIME, criteria=criteria)
+    options = {"sub_steps": SubSteps(scaling=SCALING), **options}
+    engine = CrackingEngine(grid, layers, springs, window, law=law, **options)
+    return CrackingSheet(engine, contact_time=CONTACT_TIME, criteria=criteria)

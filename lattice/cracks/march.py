@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lattice.compiled import compiled
 from lattice.cracks.cells import Cracks, Plate
 from lattice.cracks.law import CrackLaw
-from lattice.cracks.motion import crack_forces, give, renew
+from lattice.cracks.motion import Nodes, crack_forces, give, renew
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import Mesh, Motion, Pace
@@ -22,6 +22,14 @@ class Layered(NamedTuple):
     cells: Cracks
     plate: Plate
     law: CrackLaw
+
+
+class CrackedLattice(NamedTuple):
+    """The lattice as the loop sees it."""
+
+    mesh: Mesh  #: of its elastic cells
+    screen: Screen
+    layered: Layered
 
 
 @compiled(nogil=True)
@@ -43,21 +51,21 @@ def march_cracked(
     steps: int,
     stride: int,
     motion: Motion,
-    mesh: Mesh,
-    screen: Screen,
+    lattice: CrackedLattice,
     load: PointForces,
     touch: Touch,
     sums: Sums,
-    layered: Layered,
 ) -> Made:
     """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
+    mesh, screen, layered = lattice
     pace, contact_work, loss, cells, my = mesh.pace, 0.0, 0.0, layered.cells, motion.y.shape[2]
     y, v, dt = motion.y.reshape(5, -1), motion.v.reshape(5, -1), pace.go - pace.alpha
     x, way = mesh.scratch.before.reshape(5, -1), mesh.scratch.after.reshape(5, -1)
+    nodes = Nodes(my, y, v, pace.alpha, dt, x, way)
     for step in range(steps):
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
-        renew(my, y, v, pace.alpha, dt, x, way, layered)
+        renew(nodes, layered)
         if step % stride == 0:
             damped(motion, mesh, layered)
         crack_forces(layered.count, my, y, 1.0, layered.plate, cells)

@@ -2,10 +2,26 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.cracks.cells import MOVED, WIDE, elongations, evaluate, gradients, tangent_energy, turned, turned_back
+from lattice.cracks.cells import MOVED, WIDE, Strain, elongations, gradients, tangent_energy, turned, turned_back
+from lattice.cracks.evaluate import evaluate
+from lattice.grid import Array
+
+
+class Nodes(NamedTuple):
+    """Nodes of a padded row-by-row array in a sub-step, with room for two states of them; arrays are (5, nodes)."""
+
+    my: int  #: length of a row
+    y: Array  #: effective displacement x + alpha v
+    v: Array
+    alpha: float  #: material damping [s]
+    dt: float  #: sub-step [s]
+    x: Array  #: room for the displacement
+    way: Array  #: room for how far the nodes have come in the sub-step
 
 
 @compiled(inline="always")
@@ -25,19 +41,20 @@ def moved(k, my, y, plate, law, cracks):
 
 
 @compiled(nogil=True)
-def renew(my, y, v, alpha, dt, x, way, layered):
+def renew(nodes, layered):
     """Evaluates the law in every cell whose strain has moved, at the displacements y - alpha v; how many."""
     evaluated = 0
     for k in range(layered.count):
-        if moved(k, my, y, layered.plate, layered.law, layered.cells):
-            evaluate_at(k, my, y, v, alpha, dt, x, way, layered)
+        if moved(k, nodes.my, nodes.y, layered.plate, layered.law, layered.cells):
+            evaluate_at(k, nodes, layered)
             evaluated += 1
     return evaluated
 
 
 @compiled(nogil=True)
-def evaluate_at(k, my, y, v, alpha, dt, x, way, layered):
-    """Evaluates the law in cell k at y - alpha v; its energy [J]. ``x`` and ``way`` (5, nodes) are room."""
+def evaluate_at(k, nodes, layered):
+    """Evaluates the law in cell k at y - alpha v; its energy [J]."""
+    my, y, v, alpha, dt, x, way = nodes
     cracks, q = layered.cells, 0.5 / layered.plate.d
     b = cracks.corner[k]
     for c in range(5):
@@ -117,7 +134,7 @@ def give(count, motion, kick, go, cracks):
 
 @compiled(nogil=True)
 def energies(count, my, x, plate, cracks):
-    """Energy of each of the first ``count`` cells at the displacements x (5, nodes), with that of its hourglass modes."""
+    """Energy of each of the first ``count`` cells at displacements x (5, nodes), with that of its hourglass modes."""
     out, q, half = np.empty(count), 0.5 / plate.d, 0.5 * plate.d
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
     for k in range(count):
@@ -128,7 +145,7 @@ def energies(count, my, x, plate, cracks):
         rx, ry, ty = gradients(b, my, q, x[4])
         en, et, eg = turned(xx, yy, xy + yx, c, s)
         kn, kt, kg = turned(px, ry, py + rx, c, s)
-        E = tangent_energy(k, en, et, eg, kn, kt, kg, cracks)
+        E = tangent_energy(k, Strain(en, et, eg, kn, kt, kg), cracks)
         E += 0.5 * (H * (hx * hx + hy * hy) + R * (tx * tx + ty * ty))
         out[k] = cracks.constant[k] + plate.d * plate.d * E
         long = elongations(b, my, half, x)
