@@ -174,7 +174,7 @@ def tangent_energy(k: int, e: Strain, cracks: Cracks) -> float:
     """Energy of the linear cell per area at a strain, without its constant [J/m2]."""
     m, c, b, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
     en, et, eg, kn, kt, kg = e.n, e.t, e.g, e.kn, e.kt, e.kg
-    E = 0.5 * (m[0, k] * en * en + m[2, k] * et * et + m[3, k] * eg * eg) + m[1, k] * en * et
+    E: float = 0.5 * (m[0, k] * en * en + m[2, k] * et * et + m[3, k] * eg * eg) + m[1, k] * en * et
     E += 0.5 * (b[0, k] * kn * kn + b[2, k] * kt * kt + b[3, k] * kg * kg) + b[1, k] * kn * kt
     E += c[0, k] * en * kn + c[1, k] * (en * kt + et * kn) + c[2, k] * et * kt + c[3, k] * eg * kg
     E += o[0, k] * en + o[1, k] * et + o[2, k] * eg + o[3, k] * kn + o[4, k] * kt + o[5, k] * kg

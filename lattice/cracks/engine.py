@@ -64,15 +64,15 @@ class CrackingEngine(ExplicitEngine):
 
     def _corner(self, cell: int) -> int:
         i, j = divmod(cell, self.grid.ny - 1)
-        return i * self.motion.y.shape[2] + j
+        return i * int(self.motion.y.shape[2]) + j
 
     def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
         mesh, trial, layered = self.mesh, Motion(now.y, now.v.copy()), self.layered.view()
-        crack_forces(layered.count, now.y.shape[2], now.y.reshape(5, -1), 1.0, layered.plate, layered.cells)
+        crack_forces(layered.number, now.y.shape[2], now.y.reshape(5, -1), 1.0, layered.plate, layered.cells)
         sweep(trial, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
         for f in forces:
             push(f.row, f.column, f.force, trial, mesh.kick, mesh.pace.go)
-        give(layered.count, trial, mesh.kick, mesh.pace.go, layered.cells)
+        give(layered.number, trial, mesh.kick, mesh.pace.go, layered.cells)
         return trial.v
 
     # ---- what others ask of the layered cells -----------------------------------------------------------------
@@ -87,15 +87,15 @@ class CrackingEngine(ExplicitEngine):
     def _energies(self, u: Array, q: Array) -> Array:
         layered, x = self.layered.view(), np.zeros_like(self.motion.y)
         self.put(x, np.hstack((u, q)))
-        each: Array = energies(layered.count, x.shape[2], x.reshape(5, -1), layered.plate, layered.cells)
+        each: Array = energies(layered.number, x.shape[2], x.reshape(5, -1), layered.plate, layered.cells)
         return each
 
     def pull(self, held: BoolArray) -> float:
         """Force along x that nodes in ``held`` (nodes,) need against the layered cells now [N]."""
         layered, y = self.layered.view(), self.motion.y
-        crack_forces(layered.count, y.shape[2], y.reshape(5, -1), 1.0, layered.plate, layered.cells)
+        crack_forces(layered.number, y.shape[2], y.reshape(5, -1), 1.0, layered.plate, layered.cells)
         on = held[self.grid.cell_nodes[self.layered.cell]]  # (count, 4)
-        return -float((layered.cells.force[CORNERS + U_X, : layered.count].T * on).sum())
+        return -float((layered.cells.force[CORNERS + U_X, : layered.number].T * on).sum())
 
     @property
     def crack_losses(self) -> dict[str, float]:

@@ -144,9 +144,10 @@ def evaluate(k: int, x: Array, way: Array, my: int, plate: Plate, law: CrackLaw,
     old, was = resultants(k, e, cracks), spring_forces(k, long, cracks)
     found = through_thickness(k, e, plate, law, cracks)
     set_offset(k, e, found.carried, cracks)
-    sums = Shear(d * d * found.stored, d * d * found.rubbing, d * d * tangent_energy(k, e, cracks))
-    stored, rubbing, after = shear_springs(k, long, found.limit, sums, plate, cracks)
-    cracks.constant[k] = stored - after
+    start = Shear(d * d * found.stored, d * d * found.rubbing, d * d * tangent_energy(k, e, cracks))
+    sums: Shear = shear_springs(k, long, found.limit, start, plate, cracks)
+    stored, rubbing = sums.stored, sums.rubbing
+    cracks.constant[k] = stored - sums.tangent
     before = change_over(strain_of(b, my, q, axis, way), old, found.carried, 0.5 * d * d, before)
     more = elongations(b, my, 0.5 * d, way)
     for i in range(4):

@@ -23,6 +23,7 @@ import math
 from typing import NamedTuple
 
 from lattice.compiled import compiled
+from lattice.grid import Array
 from lattice.ice import Ice
 
 
@@ -67,7 +68,7 @@ class Layer(NamedTuple):
 
 
 @compiled(inline="always")
-def damage_of(q, law):
+def damage_of(q: float, law: CrackLaw) -> float:
     """Damage at the strain q > e_0 across a crack: linear softening."""
     if q >= law.e_f:
         return 1.0
@@ -75,7 +76,7 @@ def damage_of(q, law):
 
 
 @compiled(inline="always")
-def stiffness_shares(x_n, x_t, D_n, D_t, nu):
+def stiffness_shares(x_n: float, x_t: float, D_n: float, D_t: float, nu: float) -> tuple[float, float]:
     """(a_n, a_t) of the law at the elastic strains (x_n, x_t): 1 - D where the stress is tension, else 1."""
     a_n, a_t = 1.0, 1.0
     for _ in range(2):
@@ -85,7 +86,7 @@ def stiffness_shares(x_n, x_t, D_n, D_t, nu):
 
 
 @compiled(inline="always")
-def normal_energy(s_n, s_t, a_n, a_t, law):
+def normal_energy(s_n: float, s_t: float, a_n: float, a_t: float, law: CrackLaw) -> float:
     """Elastic energy of the normal stresses [J/m3]; a crack without stiffness stores none."""
     stored = -law.nu * s_n * s_t / law.E
     if a_n > 0.0:
@@ -96,7 +97,7 @@ def normal_energy(s_n, s_t, a_n, a_t, law):
 
 
 @compiled(inline="always")
-def tension(x_n, x_t, damage, law):
+def tension(x_n: float, x_t: float, damage: Array, law: CrackLaw) -> tuple[float, float, float, float, float]:
     """Stresses at elastic strains; ``damage`` (2,) grows as the law asks. Also (a_n, a_t) and the energy it took."""
     nu = law.nu
     a_n, a_t = stiffness_shares(x_n, x_t, damage[0], damage[1], nu)
@@ -116,7 +117,7 @@ def tension(x_n, x_t, damage, law):
 
 
 @compiled(inline="always")
-def crushing_of(x_n, x_t, a_n, a_t, law):
+def crushing_of(x_n: float, x_t: float, a_n: float, a_t: float, law: CrackLaw) -> tuple[float, float, float, float]:
     """Stresses of a layer that is crushed, and the strain by which it is: across n, across t, else across both.
 
     The stress returns to the box of both strengths by the shortest way in energy (associated flow), which is along the
@@ -135,7 +136,7 @@ def crushing_of(x_n, x_t, a_n, a_t, law):
 
 
 @compiled(error_model="numpy")
-def layer(eps_n, eps_t, gamma, damage, crushed, slip, law):
+def layer(eps_n: float, eps_t: float, gamma: float, damage: Array, crushed: Array, slip: float, law: CrackLaw) -> Layer:
     """A layer at these strains. ``damage`` and ``crushed`` (2,) for n and t are its states, which follow in place."""
     E, nu = law.E, law.nu
     s_n, s_t, a_n, a_t, cracking = tension(eps_n - crushed[0], eps_t - crushed[1], damage, law)

@@ -5,23 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from lattice.compiled import compiled
-from lattice.cracks.cells import Cracks, Plate
-from lattice.cracks.law import CrackLaw
-from lattice.cracks.motion import Nodes, crack_forces, give, renew
+from lattice.cracks.motion import Layered, Nodes, crack_forces, give, renew
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import Mesh, Motion, Pace
 from lattice.explicit.march import contact_force, dissipated, half_power
 from lattice.explicit.screen import Screen, overloaded
-
-
-class Layered(NamedTuple):
-    """The layered cells of a sheet with their law."""
-
-    count: int
-    cells: Cracks
-    plate: Plate
-    law: CrackLaw
 
 
 class CrackedLattice(NamedTuple):
@@ -39,11 +28,11 @@ def damped(motion: Motion, mesh: Mesh, layered: Layered) -> None:
     room.before[:] = motion.v
     room.after[:] = motion.v
     room.y[:] = pace.alpha * motion.v
-    crack_forces(layered.count, my, room.y.reshape(5, -1), 0.0, layered.plate, cells)
+    crack_forces(layered.number, my, room.y.reshape(5, -1), 0.0, layered.plate, cells)
     water = Pace(0.0, 0.0, 0.0, pace.drag + pace.alpha * pace.buoy)  # dt c / (rho h)
     trial = Motion(room.y, room.after)
     sweep(trial, mesh.intact, mesh.kick, mesh.springs, water, mesh.rows)
-    give(layered.count, trial, mesh.kick, 0.0, cells)
+    give(layered.number, trial, mesh.kick, 0.0, cells)
 
 
 @compiled(nogil=True)
@@ -68,12 +57,12 @@ def march_cracked(
         renew(nodes, layered)
         if step % stride == 0:
             damped(motion, mesh, layered)
-        crack_forces(layered.count, my, y, 1.0, layered.plate, cells)
+        crack_forces(layered.number, my, y, 1.0, layered.plate, cells)
         contact_work += half_power(load, touch, sums, motion.v)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
         push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
         push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
-        give(layered.count, motion, mesh.kick, pace.go, cells)
+        give(layered.number, motion, mesh.kick, pace.go, cells)
         contact_work += half_power(load, touch, sums, motion.v)
         if step % stride == 0:
             loss += dissipated(motion.v, mesh.scratch.before, mesh.scratch.after, mesh.mass)

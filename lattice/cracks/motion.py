@@ -7,9 +7,31 @@ from typing import NamedTuple
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.cracks.cells import MOVED, WIDE, Strain, elongations, gradients, tangent_energy, turned, turned_back
+from lattice.cracks.cells import (
+    MOVED,
+    WIDE,
+    Cracks,
+    Plate,
+    Strain,
+    elongations,
+    gradients,
+    tangent_energy,
+    turned,
+    turned_back,
+)
 from lattice.cracks.evaluate import evaluate
+from lattice.cracks.law import CrackLaw
+from lattice.explicit.layout import Motion, PerNode
 from lattice.grid import Array
+
+
+class Layered(NamedTuple):
+    """The layered cells of a sheet with their law."""
+
+    number: int  #: the first so many cells of ``cells`` are in use
+    cells: Cracks
+    plate: Plate
+    law: CrackLaw
 
 
 class Nodes(NamedTuple):
@@ -25,7 +47,7 @@ class Nodes(NamedTuple):
 
 
 @compiled(inline="always")
-def moved(k, my, y, plate, law, cracks):
+def moved(k: int, my: int, y: Array, plate: Plate, law: CrackLaw, cracks: Cracks) -> bool:
     """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
     b, q, half, s = cracks.corner[k], 0.5 / plate.d, 0.5 * plate.h, cracks.seen
     wide = max(abs(s[0, k]) + half * abs(s[3, k]), abs(s[1, k]) + half * abs(s[4, k]))
@@ -37,14 +59,15 @@ def moved(k, my, y, plate, law, cracks):
     a = abs(xx - s[0, k]) + half * abs(px - s[3, k])
     c = abs(yy - s[1, k]) + half * abs(ry - s[4, k])
     g = abs(xy + yx - s[2, k]) + half * abs(py + rx - s[5, k])
-    return a > far or c > far or g > far
+    far_enough: bool = a > far or c > far or g > far
+    return far_enough
 
 
 @compiled(nogil=True)
-def renew(nodes, layered):
+def renew(nodes: Nodes, layered: Layered) -> int:
     """Evaluates the law in every cell whose strain has moved, at the displacements y - alpha v; how many."""
     evaluated = 0
-    for k in range(layered.count):
+    for k in range(layered.number):
         if moved(k, nodes.my, nodes.y, layered.plate, layered.law, layered.cells):
             evaluate_at(k, nodes, layered)
             evaluated += 1
@@ -52,7 +75,7 @@ def renew(nodes, layered):
 
 
 @compiled(nogil=True)
-def evaluate_at(k, nodes, layered):
+def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
     """Evaluates the law in cell k at y - alpha v; its energy [J]."""
     my, y, v, alpha, dt, x, way = nodes
     cracks, q = layered.cells, 0.5 / layered.plate.d
@@ -67,11 +90,12 @@ def evaluate_at(k, nodes, layered):
     s[3, k], py, _ = gradients(b, my, q, y[3])
     rx, s[4, k], _ = gradients(b, my, q, y[4])
     s[2, k], s[5, k] = xy + yx, py + rx
-    return evaluate(k, x, way, my, layered.plate, layered.law, cracks)
+    stored: float = evaluate(k, x, way, my, layered.plate, layered.law, cracks)
+    return stored
 
 
 @compiled(nogil=True)
-def crack_forces(count, my, y, whole, plate, cracks):
+def crack_forces(count: int, my: int, y: Array, whole: float, plate: Plate, cracks: Cracks) -> None:
     """Forces of the first ``count`` cells on their nodes at the effective displacements y (5, nodes).
 
     ``whole`` is 1; 0 leaves out what the cells carry without strain, so that y = alpha v gives their damping.
@@ -117,7 +141,7 @@ def crack_forces(count, my, y, whole, plate, cracks):
 
 
 @compiled(nogil=True)
-def give(count, motion, kick, go, cracks):
+def give(count: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) -> None:
     """Adds the forces of `crack_forces` to a sub-step that has been made."""
     F, my, ny = cracks.force, motion.y.shape[2], kick.u.shape[1]
     y, v = motion.y.reshape(5, -1), motion.v.reshape(5, -1)
@@ -133,7 +157,7 @@ def give(count, motion, kick, go, cracks):
 
 
 @compiled(nogil=True)
-def energies(count, my, x, plate, cracks):
+def energies(count: int, my: int, x: Array, plate: Plate, cracks: Cracks) -> Array:
     """Energy of each of the first ``count`` cells at displacements x (5, nodes), with that of its hourglass modes."""
     out, q, half = np.empty(count), 0.5 / plate.d, 0.5 * plate.d
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0

@@ -121,7 +121,7 @@ class CrackingSheet(ExplicitSheet):
     def retire(self, nodes: IntArray) -> None:
         """As `Floe.retire`."""
         super().retire(nodes)
-        gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
+        gone = np.asarray(~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1))
         self.engine.layered.drop(gone)
 
     def _parted(self) -> BoolArray:
@@ -141,13 +141,13 @@ class CrackingSheet(ExplicitSheet):
         if rotation.max() > TURNED:
             turned = rotation > 0.5 * TURNED
             corners = turned[self.grid.cell_nodes]
-            self._cut(corners.any(axis=1) & ~corners.all(axis=1), out)
+            self._cut(np.asarray(corners.any(axis=1) & ~corners.all(axis=1)), out)
         elif not self._parted().any():
             return
         self._release_loose(out, release, turned)
         if out.pieces:
             out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
-            gone = ~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1)
+            gone = np.asarray(~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1))
             self.engine.layered.drop(gone)  # with the energy that `book_departure` has booked
 
     def _cut(self, mask: BoolArray, out: Outcome) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from lattice.cracks.cells import LOSSES, WEIGHTS, Cracks, Plate, room_for
 from lattice.cracks.law import CrackLaw
-from lattice.cracks.march import Layered
+from lattice.cracks.motion import Layered
 from lattice.grid import Array, BoolArray, IntArray
 
 
@@ -20,7 +20,7 @@ class LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
         new = object.__new__(LayeredCells)
         new.__dict__.update(vars(self))
-        new._cracks = Cracks(*(a.copy() for a in self._cracks))
+        new._cracks = Cracks._make(a.copy() for a in self._cracks)
         return new
 
     def view(self) -> Layered:
@@ -81,12 +81,12 @@ class LayeredCells:
     def angle(self) -> Array:
         """Direction n from the x axis, (count,) [rad]."""
         c, s = self._cracks.axis[:, : self.count]
-        return np.arctan2(s, c)
+        return np.asarray(np.arctan2(s, c))
 
     def parting(self, d: float) -> tuple[BoolArray, Array, Array]:
         """Across n and t, (count, 2) each: cracked through; opening of the middle and slip [m] of cells of size d."""
         c, n = self._cracks, self.count
-        through: BoolArray = (c.damage[:n] >= 1.0).all(axis=1)
+        through = np.asarray((c.damage[:n] >= 1.0).all(axis=1))
         cos, sin = c.axis[:, :n]
         e11, e22, g12 = c.seen[:3, :n]
         opening = np.stack(

@@ -119,7 +119,7 @@ def rates(n: int) -> dict[str, float]:
     """Node-steps per second."""
     e, steps = engine(n), max(4, 10_000_000 // n**2)
     none = np.zeros((0, 3))
-    touch, mesh = Touch(*np.zeros((2, 0), np.int64), np.zeros(0), none, none, np.zeros((0, 3, 3))), e.mesh
+    touch, mesh = Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), none, none, np.zeros((0, 3, 3))), e.mesh
 
     def sweeps() -> None:
         for _ in range(steps):
