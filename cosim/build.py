@@ -23,10 +23,12 @@ from coupling.steering import ByPower, Steering, fixed
 from lattice.cracks.beam import Beam
 from lattice.cracks.make import Measured, cracking_sheet
 from lattice.criteria.table import chosen
+from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
+from lattice.implicit.engine import Engine
 from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS
 from rubble.domain import Domain
@@ -108,19 +110,16 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     window, alpha = scenario.coupling.window, scenario.ice.material_damping
     springs = STIFFNESS_SETS[s.stiffness](ice)
-    common: dict[str, Any] = {
-        "held": held,
-        "damping": damping,
-        "alpha": alpha,
-        "criteria": chosen(scenario.fracture.judged),
-    }
+    criteria = chosen(scenario.fracture.judged)
+    options: dict[str, Any] = {"held_in_plane": held, "damping": damping, "alpha": alpha}
     dynamic = scenario.fracture.propagation == "dynamic"
     if scenario.fracture.cracks == "closing":
-        return cracking_sheet(grid, ice, springs, window, build_measured(scenario), dynamic=dynamic, **common)
+        measured = build_measured(scenario)
+        return cracking_sheet(grid, ice, springs, window, measured, dynamic=dynamic, criteria=criteria, **options)
     if dynamic:
-        return ExplicitSheet(grid, ice, springs, window, **common)
+        return ExplicitSheet(ExplicitEngine(grid, ice, springs, window, **options), criteria=criteria)
     windows = max(1, round(scenario.fracture.longest_step / window))
-    return Sheet(grid, ice, springs, window, **common, long_step=windows)
+    return Sheet(Engine(grid, ice, springs, **options), window, criteria=criteria, long_step=windows)
 
 
 def build_measured(scenario: Scenario) -> Measured:

@@ -11,7 +11,6 @@ Other criteria are judged at the end of each block of sub-steps between two eval
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -26,13 +25,11 @@ from lattice.explicit.layout import U_X
 from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release
-from lattice.grid import Array, BoolArray, Grid, IntArray
-from lattice.ice import Ice
+from lattice.grid import Array, IntArray
 from lattice.loads import Loads, keep
 from lattice.outcome import Outcome
 from lattice.reaction import Mean, between
 from lattice.state import State
-from lattice.stiffness import Springs
 
 #: longest time between two evaluations of the contact law, linear in between: a test finds 1e-4 of the displacements
 #: against one evaluation in every sub-step [s]
@@ -48,35 +45,23 @@ class ExplicitSheet(Floe):
 
     def __init__(
         self,
-        grid: Grid,
-        ice: Ice,
-        springs: Springs,
-        dt: float,
+        engine: ExplicitEngine,
         *,
-        held: BoolArray,
-        damping: float = 0.0,
-        alpha: float = 0.0,
         share: float = LOOSE,
-        step: float | None = None,
         contact_time: float = CONTACT_TIME,
         criteria: tuple[Criterion, ...] = THESIS,
-        engine: Callable[..., ExplicitEngine] = ExplicitEngine,
     ):
-        """As `Sheet`; ``step`` is the largest sub-step [s] (default: a share of the critical one).
-
-        ``engine`` makes the engine, see there.
-        """
-        made = engine(grid, ice, springs, dt, held_in_plane=held, damping=damping, alpha=alpha, step=step)
-        super().__init__(made, dt, held=held, share=share, criteria=criteria)
+        """As `Floe`, with the windows of the engine; ``contact_time`` as `CONTACT_TIME` [s]."""
+        super().__init__(engine, engine.window, share=share, criteria=criteria)
         self._contact_time = contact_time
-        self.block = max(1, int(contact_time / made.dt))  #: sub-steps between two evaluations of the contact
+        self.block = max(1, int(contact_time / engine.dt))  #: sub-steps between two evaluations of the contact
         screened = [c.judge for c in criteria if c.judge in SCREENED][:1]
         self._screened = bool(screened)  #: the loop stops at an overloaded cell
         self._others = len(criteria) > len(screened)  #: blocks are judged at their end
         for judge in screened:
-            made.watch(judge)
+            engine.watch(judge)
         self._lively, self._loss_rate = True, 0.0
-        self._easing = Easing(grid.cells, ice.sigma_t)
+        self._easing = Easing(engine.grid.cells, engine.ice.sigma_t)
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
         self.failed_cells: list[int] = []  #: which they were
 

@@ -43,24 +43,23 @@ class Floe(ABC):
         engine: Engine,
         dt: float,
         *,
-        held: BoolArray,
         share: float = LOOSE,
         criteria: tuple[Criterion, ...] = THESIS,
     ):
-        """``held`` (nodes,) or (nodes, 2) as in `Engine`; a piece with a held node is not loose.
+        """Windows last ``dt`` [s]. A piece with a node that the engine holds is not loose.
 
         A free piece with less than ``share`` of the floe's area leaves the lattice (see `fragments.loose_pieces`).
-        Windows last ``dt`` [s]. ValueError where a criterion needs a strength that the ice does not have.
+        ValueError where a criterion needs a strength that the ice does not have.
         """
         grid = self.grid = engine.grid
         self.ice, self.share, self.dt, self.engine = engine.ice, share, dt, engine
         self.judge = Judge(grid, engine.ice, criteria)
-        self.held = np.asarray(held.reshape(grid.nodes, -1).any(axis=1))  #: nodes held in some direction, (nodes,)
+        self.held = np.asarray(engine.held.any(axis=1))  #: nodes held in some direction, (nodes,)
         self.intact = np.ones(grid.cells, bool)
         self.present = np.ones(grid.nodes, bool)
         self.state = State.rest(grid.nodes)
         self.energy = EnergyBooks(engine)
-        self.support = Support(engine, held)
+        self.support = Support(engine)
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
         self._known: tuple[bytes, Standing] | None = None

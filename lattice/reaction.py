@@ -68,11 +68,10 @@ class Reaction:
 class Support:
     """The nodes that are held along x, and the cells around them."""
 
-    def __init__(self, engine: Engine, held: BoolArray):
-        """``held`` (nodes,), or (nodes, 2) each direction on its own."""
+    def __init__(self, engine: Engine):
         grid = engine.grid
         self.engine = engine
-        self.held = np.ascontiguousarray(held.reshape(grid.nodes, -1)[:, 0])
+        self.held = np.ascontiguousarray(engine.held[:, 0])
         self._cells: IntArray = np.flatnonzero(self.held[grid.cell_nodes].any(axis=1))
         self._around, local = np.unique(grid.cell_nodes[self._cells], return_inverse=True)  # nodes of these cells
         local = local.reshape(-1, 4)

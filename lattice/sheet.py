@@ -14,15 +14,13 @@ import numpy as np
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.table import THESIS, Criterion
 from lattice.floe import LOOSE, Floe, Release
-from lattice.grid import Array, BoolArray, Grid, IntArray
-from lattice.ice import Ice
+from lattice.grid import Array, IntArray
 from lattice.implicit.engine import Engine
 from lattice.implicit.step import Step
 from lattice.loads import Loads, keep, total
 from lattice.long_step import LongSteps
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.reaction import Applied, between, of_cubic, of_step
-from lattice.stiffness import Springs
 
 LOCATION = 1e-4  #: part of a window to which a failure is located: 2.5 us of 25 ms, far below what the step resolves
 TURNED = 0.1  #: rotation out of plane at which a hanging piece leaves: 1 - cos = 0.5 %, the lattice is linear [rad]
@@ -35,25 +33,16 @@ class Sheet(Floe):
 
     def __init__(
         self,
-        grid: Grid,
-        ice: Ice,
-        springs: Springs,
+        engine: Engine,
         dt: float,
         *,
-        held: BoolArray,
-        damping: float = 0.0,
-        alpha: float = 0.0,
         share: float = LOOSE,
         long_step: int = 1,
         criteria: tuple[Criterion, ...] = THESIS,
     ):
-        """``held``, ``damping``, ``alpha`` as in `Engine`, ``share`` and ``criteria`` as in `Floe`.
-
-        ``long_step`` is the largest number of windows in one step.
-        """
-        engine = Engine(grid, ice, springs, held_in_plane=held, damping=damping, alpha=alpha)
+        """As `Floe`; ``long_step`` is the largest number of windows in one step."""
         engine.use(dt)
-        super().__init__(engine, dt, held=held, share=share, criteria=criteria)
+        super().__init__(engine, dt, share=share, criteria=criteria)
         self.ahead = LongSteps(long_step, dt)
 
     def set_window(self, dt: float) -> None:

@@ -61,15 +61,15 @@ def read_contact(arbiter: int, contact: int, layout: ArbiterLayout, turn: bool) 
     nx, nz = real(arbiter + layout.n), real(arbiter + layout.n + 8)
     jn, jt = real(contact + layout.jn), real(contact + layout.jt)
     return Contact(
-        real(contact + a),
-        real(contact + a + 8),
-        real(contact + b),
-        real(contact + b + 8),
-        sign * (jn * nx - jt * nz),
-        sign * (jn * nz + jt * nx),
-        jn,
-        sign * (jn * nx),
-        sign * (jn * nz),
+        a_x=real(contact + a),
+        a_z=real(contact + a + 8),
+        b_x=real(contact + b),
+        b_z=real(contact + b + 8),
+        j_x=sign * (jn * nx - jt * nz),
+        j_z=sign * (jn * nz + jt * nx),
+        push=jn,
+        push_x=sign * (jn * nx),
+        push_z=sign * (jn * nz),
     )
 
 

@@ -19,11 +19,12 @@ from rubble.overload import Strength, note_overload
 from rubble.pointers import ArbiterLayout, integer, real, short
 from rubble.slots import STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
-#: of a block over a window [N s]: impulse on the structure x, z; lateral impulse N n_y of the structure on the block;
-#: mu N of the structure; mu N weighted with 1 / p; normal impulses on other ice; with the sheet; normal impulse on the
-#: structure, and the same weighted with x and z of the point [N s m]
+#: of a block over a window [N s]
 ON_BLOCK = record(
-    "structure_x", "structure_z", "lateral", "grip", "grip_slip", "ice", "sheet", "push", "push_at_x", "push_at_z"
+    *("structure_x", "structure_z"),  # impulse on the structure
+    *("lateral", "grip", "grip_slip"),  # of the structure on the block: N n_y; mu N; mu N weighted with 1 / p
+    *("ice", "sheet"),  # normal impulses on other ice; with the sheet
+    *("push", "push_at_x", "push_at_z"),  # normal impulse on the structure; weighted with x and z of the point [N s m]
 )
 #: of the sheet over a window: work done by it on blocks [J], impulse x, z on it [N s] and moment about the origin
 ON_SHEET = record("work", "x", "z", "moment")

@@ -135,15 +135,15 @@ def measure(
     on_sheet = sum(float(layer.sheet_forces(key)[:, 1].sum()) for key in layer.sections)
     lift = float(layer.load_on_structure[:, 2].sum()) + on_sheet
     return Pile(
-        len(layer.blocks),
-        layer.mass / layer.physics.rho_i,
-        layer.mass,
-        pores / (ice + pores),
-        float(np.mean(slopes)),
-        float(max(depths)),
-        time,
-        calm,
-        lift,
+        blocks=len(layer.blocks),
+        volume=layer.mass / layer.physics.rho_i,
+        mass=layer.mass,
+        porosity=pores / (ice + pores),
+        slope=float(np.mean(slopes)),
+        depth=float(max(depths)),
+        time=time,
+        calm=calm,
+        force=lift,
     )
 
 

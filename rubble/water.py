@@ -189,8 +189,7 @@ def block_force(edges: Records, start: int, end: int, water: Water, flooded: flo
     v_x = row.v_x - water.current  # drag is that of the motion through the water
     pose = Pose(z, c, s, row.v_x, row.v_z, c * v_x + s * row.v_z, c * row.v_z - s * v_x, om)
     fx, fz, moment, power, lack, lowest = 0.0, 0.0, 0.0, 0.0, 0.0, np.inf
-    wet_x, wet_z, drag_x, drag_z, turn = 0.0, 0.0, 0.0, 0.0, 0.0
-    full_x, full_z, dry_x, dry_z = 0.0, 0.0, 0.0, 0.0
+    wet_x = wet_z = drag_x = drag_z = turn = full_x = full_z = dry_x = dry_z = 0.0
     for e in range(start, end):
         edge = edges[e]
         width, level, dry, tx, tz = edge.width, z, False, edge.t_x, edge.t_z
@@ -211,7 +210,10 @@ def block_force(edges: Records, start: int, end: int, water: Water, flooded: flo
     drag_x, drag_z = c * drag_x - s * drag_z, s * drag_x + c * drag_z
     fx, fz = c * fx - s * fz, s * fx + c * fz
     power += drag_x * water.current
-    return WaterForce(fx, fz, moment, power, lack, lowest, full_x, full_z, turn, dry_x, dry_z, drag_x, drag_z)
+    return WaterForce(
+        x=fx, z=fz, moment=moment, drag_power=power, dry_power=lack, lowest=lowest,
+        flooded_x=full_x, flooded_z=full_z, flooded_moment=turn, dry_x=dry_x, dry_z=dry_z, drag_x=drag_x, drag_z=drag_z,
+    )  # fmt: skip
 
 
 @compiled(nogil=True)

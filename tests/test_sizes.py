@@ -16,17 +16,6 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = ("cosim", "coupling", "lattice", "rubble")
 FILE, FUNCTION, KERNEL, VALUES = 250, 40, 60, 8
 KERNELS = ("compiled", "callback")
-#: what is too large still, by file: (what, name); an entry that has become needless fails the test
-KNOWN: dict[str, set[str]] = {
-    "coupling/interface/rubble.py": {"call cls"},
-    "coupling/rubble_port/births.py": {"call BlockBirth"},
-    "lattice/explicit_sheet.py": {"values __init__"},
-    "lattice/sheet.py": {"values __init__"},
-    "rubble/arbiters.py": {"call Contact"},
-    "rubble/contacts.py": {"call record"},
-    "rubble/initial.py": {"call Pile"},
-    "rubble/water.py": {"call WaterForce"},
-}
 SOURCES = sorted(file for package in PACKAGES for file in (ROOT / package).rglob("*.py"))
 
 
@@ -58,12 +47,7 @@ def too_large(source: str) -> set[str]:
 
 @pytest.mark.parametrize("file", SOURCES, ids=lambda f: str(f.relative_to(ROOT)))
 def test_nothing_is_too_large(file):
-    known = KNOWN.get(file.relative_to(ROOT).as_posix(), set())
-    assert too_large(file.read_text(encoding="utf-8")) == known
-
-
-def test_what_is_known_is_there():
-    assert {path for path in KNOWN if not (ROOT / path).is_file()} == set()
+    assert too_large(file.read_text(encoding="utf-8")) == set()
 
 
 LONG = "\n".join(f"    x{k} = {k}" for k in range(40))

@@ -39,18 +39,18 @@ class BlockTable:
         """No blocks."""
         i, f = np.empty(0, np.int64), np.empty(0)
         return cls(
-            i,
-            i,
-            i,
-            f,
-            f,
-            np.empty((0, 3)),
-            f,
-            np.empty((0, 3)),
-            f,
-            np.empty((0, 3)),
-            np.empty((0, 2)),
-            np.zeros(1, np.int64),
+            id=i,
+            section=i,
+            phase=i,
+            mass=f,
+            width=f,
+            position=np.empty((0, 3)),
+            angle=f,
+            velocity=np.empty((0, 3)),
+            omega=f,
+            load=np.empty((0, 3)),
+            outline=np.empty((0, 2)),
+            offset=np.zeros(1, np.int64),
         )
 
 

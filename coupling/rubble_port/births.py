@@ -82,8 +82,18 @@ def _birth(f: Fragment, h: float, n: IntArray) -> BlockBirth:
     own = m * h**2 / 12.0  # rotary inertia of a node (2.22)
     inertia = float((m * (arm**2).sum(axis=1) + own).sum())
     omega = float((spin - own * f.tilt_rate[n]).sum() / inertia)
-    y = float(np.average(f.position[n, 1], weights=m))
-    return BlockBirth(polygon, cuts, widths, angle, y, float(mass.sum()), centre, velocity, omega, inertia)
+    return BlockBirth(
+        polygon=polygon,
+        cuts=cuts,
+        widths=widths,
+        angle=angle,
+        y=float(np.average(f.position[n, 1], weights=m)),
+        mass=float(mass.sum()),
+        centre=centre,
+        velocity=velocity,
+        omega=omega,
+        inertia=inertia,
+    )
 
 
 def _angle(x: Array, z: Array, tilt: Array, weight: Array) -> float:

@@ -17,6 +17,7 @@ import numpy as np
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import CrackLaw, law_of
+from lattice.explicit.engine import SubSteps
 from lattice.explicit.forces import NOTHING, Touch
 from lattice.explicit.layout import W
 from lattice.grid import BoolArray, Grid, IntArray
@@ -85,8 +86,9 @@ class BeamTest:
         for side in ("x-", "x+", "y-", "y+"):
             edge[g.edge_nodes(side)] = True
         damping = 0.1 * np.sqrt(ice.k_f * ice.rho_i * ice.h)
+        slow, springs = SubSteps(scaling=4.0), hrennikoff(ice)
         self.engine = CrackingEngine(
-            g, ice, hrennikoff(ice), seconds, law=law, held_in_plane=edge, damping=damping, alpha=1e-4, scaling=4.0
+            g, ice, springs, seconds, law=law, held_in_plane=edge, damping=damping, alpha=1e-4, sub_steps=slow
         )
         for kick in self.engine.mesh.kick:
             kick[edge.reshape(g.nx, g.ny).nonzero()] = 0.0  # clamped: no deflection, no rotation

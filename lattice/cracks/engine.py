@@ -11,7 +11,7 @@ from lattice.cracks.law import CrackLaw
 from lattice.cracks.march import Stretch, march_cracked
 from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give
 from lattice.cracks.state import LayeredCells
-from lattice.explicit.engine import ExplicitEngine
+from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import U_X, Motion
@@ -33,7 +33,8 @@ class CrackingEngine(ExplicitEngine):
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        self.layered, self.scaling = LayeredCells(law, plate), float(options.get("scaling", 1.0))
+        self.layered = LayeredCells(law, plate)
+        self.slow = options.get("sub_steps", TRUE_INERTIA).scaling > 1.0
         super().__init__(grid, ice, springs, window, **options)
 
     def _critical_step(self) -> float:
@@ -41,7 +42,7 @@ class CrackingEngine(ExplicitEngine):
 
         Stiffness-proportional damping does nothing to slow motion, but shortens sub-steps in proportion.
         """
-        if self.scaling > 1.0:
+        if self.slow:
             asked, self.alpha = self.alpha, 0.0
             self.alpha = min(asked, SLOW_DAMPING * super()._critical_step())
         return super()._critical_step()

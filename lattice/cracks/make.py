@@ -6,8 +6,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lattice.cracks.beam import Beam, layer_strength, standard_beam
+from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import law_of
-from lattice.cracks.sheet import CrackingSheet
+from lattice.cracks.sheet import PRINCIPAL, CrackingSheet
+from lattice.criteria.table import Criterion
+from lattice.explicit.engine import SubSteps
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.stiffness import Springs
@@ -27,9 +30,17 @@ class Measured:
 
 
 def cracking_sheet(
-    grid: Grid, ice: Ice, springs: Springs, window: float, measured: Measured, *, dynamic: bool = False, **options: Any
+    grid: Grid,
+    ice: Ice,
+    springs: Springs,
+    window: float,
+    measured: Measured,
+    *,
+    dynamic: bool = False,
+    criteria: tuple[Criterion, ...] = PRINCIPAL,
+    **options: Any,
 ) -> CrackingSheet:
-    """The sheet; ``dynamic`` keeps the true inertia of cracks, ``options`` as in `CrackingSheet`."""
+    """The sheet; ``dynamic`` keeps the true inertia of cracks, ``options`` as in `CrackingEngine`."""
     strength = measured.strength
     if strength is None:
         beam = measured.beam or standard_beam(ice)
@@ -37,6 +48,6 @@ def cracking_sheet(
         strength = layer_strength(ice, measured.friction, measured.fracture_energy, beam, grid.d)
     layers = replace(ice, sigma_t=strength, sigma_f=strength, beam_test=None)
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
-    if not dynamic:
-        options = {"scaling": SCALING, **options}
-    return CrackingSheet(grid, layers, springs, window, law=law, **options)
+    sub_steps = SubSteps(scaling=1.0 if dynamic else SCALING)
+    engine = CrackingEngine(grid, layers, springs, window, law=law, **{"sub_steps": sub_steps, **options})
+    return CrackingSheet(engine, criteria=criteria)

@@ -7,23 +7,19 @@ slipped by h in any case, or when it has turned by `TURNED`: not when its cells 
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Any
-
 import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.hinges import DEEP, Hinges, hinges, no_hinges
-from lattice.cracks.law import CrackLaw
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import CRITERIA, Criterion
 from lattice.explicit.engine import Marched
 from lattice.explicit.forces import PointForces
 from lattice.explicit.window import Window
-from lattice.explicit_sheet import ExplicitSheet
-from lattice.floe import Release
+from lattice.explicit_sheet import CONTACT_TIME, ExplicitSheet
+from lattice.floe import LOOSE, Release
 from lattice.grid import Array, BoolArray, IntArray
 from lattice.loads import Loads, total
 from lattice.outcome import TURNED_TOO_FAR, Outcome
@@ -38,11 +34,16 @@ class CrackingSheet(ExplicitSheet):
 
     engine: CrackingEngine
 
-    def __init__(self, *args: Any, law: CrackLaw, scaling: float = 1.0, criteria: tuple[Criterion, ...] = PRINCIPAL,
-                 **options: Any):  # fmt: skip
+    def __init__(
+        self,
+        engine: CrackingEngine,
+        *,
+        share: float = LOOSE,
+        contact_time: float = CONTACT_TIME,
+        criteria: tuple[Criterion, ...] = PRINCIPAL,
+    ):
         """As `ExplicitSheet`; the strengths of the ice are those of its layers."""
-        make = partial(CrackingEngine, law=law, scaling=scaling)
-        super().__init__(*args, criteria=criteria, engine=make, **options)
+        super().__init__(engine, share=share, contact_time=contact_time, criteria=criteria)
         self._pull = 0.0  #: impulse along x that held nodes have taken from layered cells in this window [N s]
 
     def rest_under(self, loads: Loads) -> None:

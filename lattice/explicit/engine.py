@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -31,6 +32,18 @@ from lattice.stiffness import Springs
 #: longest sub-step: the critical one is exact (a test runs 0.999 and 1.01 of it), a tenth is left for the contact's
 #: stiffness, which the frequency of the lattice alone does not know [-]
 SHARE_OF_CRITICAL = 0.9
+
+
+class SubSteps(NamedTuple):
+    """How long sub-steps are, and may be."""
+
+    longest: float | None = None  #: [s]; None: `SHARE_OF_CRITICAL` of the critical one
+    #: factor on the mass in the plane and the rotary inertia, whose waves are the fastest: where the inertia of cracks
+    #: does not matter sub-steps may be longer. The mass of the deflection stays the true one [-]
+    scaling: float = 1.0
+
+
+TRUE_INERTIA = SubSteps()  #: as long as is stable
 
 
 @dataclass(frozen=True)
@@ -61,14 +74,10 @@ class ExplicitEngine(Engine):
         held_in_plane: BoolArray,
         damping: float = 0.0,
         alpha: float = 0.0,
-        step: float | None = None,
-        scaling: float = 1.0,
+        sub_steps: SubSteps = TRUE_INERTIA,
     ):
-        """``window`` [s] is cut into equal sub-steps of at most ``step`` [s] (default: `SHARE_OF_CRITICAL`).
-
-        ``scaling`` multiplies the mass in the plane and the rotary inertia, whose waves are the fastest: where the
-        inertia of cracks does not matter sub-steps may be longer. The mass of the deflection stays the true one.
-        """
+        """As `Engine`; ``window`` [s] is cut into equal sub-steps. ValueError if they are not stable."""
+        step, scaling = sub_steps
         super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha)
         self.inertia_u = scaling * self.M_u
         self.inertia_q = (self.M_q.reshape(-1, 3) * (1.0, scaling, scaling)).ravel()

@@ -47,7 +47,8 @@ class Engine:
         self.C_q, self.k_f = foundation(grid, damping), foundation(grid, ice.k_f)
         self.rows_u, self.rows_q = in_plane_springs(springs), out_of_plane_springs(springs, grid.d)
         self.springs_u, self.springs_q = SpringTable.of(grid, self.rows_u), SpringTable.of(grid, self.rows_q)
-        self._held = np.broadcast_to(held_in_plane.reshape(grid.nodes, -1), (grid.nodes, 2)).ravel()
+        self.held = np.broadcast_to(held_in_plane.reshape(grid.nodes, -1), (grid.nodes, 2))  #: (nodes, 2) in x and y
+        self._held = self.held.ravel()
         self._intact = np.ones(grid.cells, bool)
         self._systems: dict[float, tuple[CrackedSystem, CrackedSystem]] = {}
 

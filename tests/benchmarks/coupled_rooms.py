@@ -37,6 +37,7 @@ from coupling.rubble_port import RubblePort
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
 from coupling.sheet_port.front import Front
+from lattice.criteria.judge import Judge
 from lattice.energy import EnergyBooks
 from lattice.implicit.edge import Edge
 from lattice.implicit.engine import Engine
@@ -56,7 +57,7 @@ DOORS = {
         (CrackedSystem, "compliance"),
         (CrackedSystem, "response"),
     ],
-    "failure checks": [(Sheet, "_utilisation"), (Sheet, "_cells"), (Sheet, "_release_loose"), (Sheet, "_locate")],
+    "failure checks": [(Sheet, "_utilisation"), (Judge, "standing"), (Sheet, "_release_loose"), (Sheet, "_locate")],
     "edge contact": [
         (OverlapContact, "evaluate"),
         (OverlapContact, "close_window"),

@@ -21,7 +21,7 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
-from lattice.explicit.engine import ExplicitEngine
+from lattice.explicit.engine import ExplicitEngine, SubSteps
 from lattice.explicit.forces import NOTHING, Touch
 from lattice.explicit.kernels import sweep
 from lattice.explicit.screen import overloaded
@@ -104,7 +104,7 @@ def engine(n: int) -> ExplicitEngine:
         held_in_plane=np.zeros(n * n, bool),
         alpha=1e-3,
         damping=500.0,
-        step=1e-4,
+        sub_steps=SubSteps(longest=1e-4),
     )
     e.motion.v[:, :n, :n] = 1e-6 * np.random.default_rng(1).standard_normal((5, n, n))
     return e
@@ -119,7 +119,7 @@ def rates(n: int) -> dict[str, float]:
     """Node-steps per second."""
     e, steps = engine(n), max(4, 10_000_000 // n**2)
     none = np.zeros((0, 3))
-    touch, mesh = Touch(*np.zeros((2, 0), np.int64), np.zeros(0), none, none, np.zeros((0, 3, 3))), e.mesh
+    touch, mesh = Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), none, none, np.zeros((0, 3, 3))), e.mesh
 
     def sweeps() -> None:
         for _ in range(steps):

@@ -26,6 +26,7 @@ from cosim.scenario.scenario import Scenario
 from coupling.contact import ContactLaw
 from coupling.interface import NS, SheetForces, SimulationError
 from coupling.sheet_port import SheetPort
+from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.ice import Ice
 from lattice.sheet import Sheet
@@ -59,8 +60,9 @@ def sheet_of(scenario: Scenario, engine: str) -> Sheet:
         return sheet
     damping = scenario.water.damping * math.sqrt(ice.k_f * ice.rho_i * ice.h)
     alpha = scenario.ice.material_damping if engine == "dynamic" else 0.0
+    springs, window = hrennikoff(ice), scenario.coupling.window
     return ExplicitSheet(
-        sheet.grid, ice, hrennikoff(ice), scenario.coupling.window, held=sheet.held, damping=damping, alpha=alpha
+        ExplicitEngine(sheet.grid, ice, springs, window, held_in_plane=sheet.engine.held, damping=damping, alpha=alpha)
     )
 
 

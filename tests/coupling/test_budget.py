@@ -10,9 +10,11 @@ from cosim.scenario.loading import load_scenario
 from coupling.budget import AXES, TERMS, force_budget
 from coupling.rubble_port import RubblePort
 from lattice.contact import NoContact
+from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.implicit.engine import Engine
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
@@ -110,7 +112,8 @@ def test_a_sheet_pressed_down_and_pushed_ahead(long_step):
     ice = Ice(E=8.7e9, nu=1 / 3, h=1.0, rho_i=RHO_I, rho_w=RHO_W, sigma_t=750e3, sigma_f=750e3, sigma_c=4e6)
     held = np.zeros(grid.nodes, bool)
     held[grid.edge_nodes("x-")] = True
-    sheet = Sheet(grid, ice, hrennikoff(ice), 0.05, held=held, damping=2e4, alpha=1e-2, long_step=long_step)
+    engine = Engine(grid, ice, hrennikoff(ice), held_in_plane=held, damping=2e4, alpha=1e-2)
+    sheet = Sheet(engine, 0.05, long_step=long_step)
     down, ahead = 100.0 * grid.area, 50.0 * grid.area
     r = press(sheet, down, ahead, windows=400, tolerance=1e-7)
     assert r.applied["load"] == pytest.approx((ahead.sum(), -down.sum()), rel=1e-12)
@@ -124,7 +127,8 @@ def test_the_dynamic_engine_adds_up_within_its_quadrature():
     ice = Ice(E=8.7e9, nu=1 / 3, h=1.0, rho_i=RHO_I, rho_w=RHO_W, sigma_t=75e6, sigma_f=75e6, sigma_c=4e8)
     held = np.zeros(grid.nodes, bool)
     held[grid.edge_nodes("x-")] = True
-    sheet = ExplicitSheet(grid, ice, hrennikoff(ice), 0.05, held=held, damping=500.0, alpha=1e-3)
+    engine = ExplicitEngine(grid, ice, hrennikoff(ice), 0.05, held_in_plane=held, damping=500.0, alpha=1e-3)
+    sheet = ExplicitSheet(engine)
     down, ahead = 100.0 * grid.area, 50.0 * grid.area
     r = press(sheet, down, ahead, windows=20, tolerance=1e-3)
     assert r.foundation[1] > 0.1 * down.sum()

@@ -9,6 +9,7 @@ from coupling.sheet_port import SheetPort
 from coupling.structure import plane_slope
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.implicit.engine import Engine
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
 
@@ -20,7 +21,7 @@ def port(contact="overlap", rows_gone=0):
     grid = Grid.rectangle(20.0, 12.0, 11, 7, -20.0 - ICE.freeboard, -6.0)
     held = np.zeros(grid.nodes, bool)
     held[grid.edge_nodes("x-")] = True
-    sheet = Sheet(grid, ICE, hrennikoff(ICE), 0.05, held=held)
+    sheet = Sheet(Engine(grid, ICE, hrennikoff(ICE), held_in_plane=held), 0.05)
     law = ContactLaw(200e3, 0.1, ICE.E / D)
     out = SheetPort(sheet, plane_slope(np.pi / 4), law, 0.1, contact=CONTACTS[contact])
     for row in range(rows_gone):

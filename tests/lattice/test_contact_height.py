@@ -102,9 +102,8 @@ def test_what_a_point_feels_and_how_it_moves_belong_together(height, lead):
 
 
 def cushioned(height, long_step=1, lead=0.0):
-    sheet = Sheet(
-        GRID, ICE, hrennikoff(ICE), 0.025, held=back_held(GRID), damping=2000.0, alpha=1e-3, long_step=long_step
-    )
+    engine = Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=back_held(GRID), damping=2000.0, alpha=1e-3)
+    sheet = Sheet(engine, 0.025, long_step=long_step)
     for k in range(80):
         sheet.advance(0.025 * k, [], Cushion(height, lead), lambda nodes: None)
     return sheet
@@ -136,7 +135,7 @@ def test_books_with_the_wrong_sign_of_the_lever_do_not_close(height, lead):
 def test_work_is_the_force_times_the_way_of_its_point():
     """Exactly so for constant forces: also where they turn the edge more than they push it."""
     push = Push(GRID.edge_nodes("x+"), np.tile([-1e5, 3e4, -2e4], (GRID.ny, 1)), 1.4, 0.8)
-    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=back_held(GRID))
+    sheet = Sheet(Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=back_held(GRID)), 0.05)
     for k in range(30):
         sheet.advance(0.05 * k, [], push, lambda nodes: None)
     work = (push.force * edge_displacement(sheet.state, push.nodes, lever_of(push))).sum()

@@ -12,6 +12,7 @@ from lattice.cracks.beam import Beam, BeamTest, cut_beam, layer_strength, standa
 from lattice.cracks.hinges import hinges
 from lattice.cracks.law import law_of
 from lattice.cracks.make import Measured, cracking_sheet
+from lattice.explicit.engine import SubSteps
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.loads import NodeLoad
@@ -25,7 +26,8 @@ def sheet_of(strength=450e3, fracture_energy=300.0, scaling=1.0):
     held = np.zeros((GRID.nodes, 2), bool)
     held[GRID.edge_nodes("x-")] = True
     measured = Measured(fracture_energy, 0.3, strength=strength)
-    options = {"held": held, "damping": 0.1 * np.sqrt(ICE.k_f * ICE.rho_i * ICE.h), "alpha": 1e-4, "scaling": scaling}
+    damping = 0.1 * np.sqrt(ICE.k_f * ICE.rho_i * ICE.h)
+    options = {"held_in_plane": held, "damping": damping, "alpha": 1e-4, "sub_steps": SubSteps(scaling=scaling)}
     return cracking_sheet(GRID, ICE, hrennikoff(ICE), 0.05, measured, **options)
 
 

@@ -105,7 +105,7 @@ def test_a_pulled_strip_breaks_at_its_tensile_strength():
     failed = []
     for stress in (0.999 * ice.sigma_t, 1.001 * ice.sigma_t):
         held = np.zeros(GRID.nodes, bool)
-        sheet = Sheet(GRID, ice, hrennikoff(ice), 1000.0, held=held)
+        sheet = Sheet(Engine(GRID, ice, hrennikoff(ice), held_in_plane=held), 1000.0)
         F = NOTHING_U.copy()
         share = np.full(GRID.ny, GRID.d)
         share[[0, -1]] *= 0.5

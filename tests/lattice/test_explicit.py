@@ -9,7 +9,7 @@ from lattice.assembly import assemble
 from lattice.contact import NoContact
 from lattice.criteria.laws import combined_tension
 from lattice.energy import EnergyBooks
-from lattice.explicit.engine import ExplicitEngine
+from lattice.explicit.engine import ExplicitEngine, SubSteps
 from lattice.explicit.forces import NOTHING, Touch
 from lattice.explicit.kernels import sweep
 from lattice.explicit.march import march
@@ -17,6 +17,7 @@ from lattice.explicit.screen import overloaded
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
+from lattice.implicit.engine import Engine
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.state import State
@@ -26,7 +27,7 @@ from lattice.strain import CellState
 GRID = Grid(9, 7, 3.0)
 BRITTLE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0, sigma_t=750e3, sigma_f=750e3, sigma_c=4e6)
 ICE = replace(BRITTLE, sigma_t=1e15, sigma_f=1e15, sigma_c=5e15)
-FREE, HERE = np.zeros(GRID.nodes, bool), np.ones(GRID.nodes, bool)
+HERE = np.ones(GRID.nodes, bool)
 NO_TOUCH = Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), *np.zeros((2, 0, 3)), np.zeros((0, 3, 3)))
 MIRROR = np.arange(GRID.nodes).reshape(GRID.nx, GRID.ny)[:, ::-1].ravel()
 
@@ -95,7 +96,7 @@ def test_the_compiled_criterion_is_the_criterion():
 
 def energy_drift(share):
     e = engine(0.01)
-    e = engine(0.01, step=share * e.critical)
+    e = engine(0.01, sub_steps=SubSteps(share * e.critical))
     books, s = EnergyBooks(e), smooth()
     live = np.ones(GRID.cells, bool)
     books.measure(s, live, HERE)
@@ -160,10 +161,10 @@ def test_mirrored_motion_stays_mirrored():
 def test_the_critical_step_is_sharp_and_a_longer_one_is_refused(alpha):
     limit = engine(0.1, alpha=alpha).critical
     with pytest.raises(ValueError, match="is not stable: use at most") as error:
-        engine(0.1, alpha=alpha, step=1.001 * limit)
+        engine(0.1, alpha=alpha, sub_steps=SubSteps(1.001 * limit))
     assert "\n" not in str(error.value)
     for share, bounded in ((0.999, True), (1.01, False)):
-        e = engine(2000 * 0.9 * limit, alpha=alpha, step=0.9 * limit)
+        e = engine(2000 * 0.9 * limit, alpha=alpha, sub_steps=SubSteps(0.9 * limit))
         e.allocate(share * limit)
         e.start(rough(), HERE, ())
         size = np.abs(e.motion.y).max()
@@ -190,7 +191,11 @@ class Cushion:
 def loaded(kind, windows=120, height=0.0, lead=0.0, **options):
     held = np.zeros(GRID.nodes, bool)
     held[GRID.edge_nodes("x-")] = True
-    sheet = kind(GRID, ICE, hrennikoff(ICE), 0.025, held=held, damping=2000.0, alpha=1e-3, **options)
+    damped = {"held_in_plane": held, "damping": 2000.0, "alpha": 1e-3}
+    if kind is Sheet:
+        sheet = Sheet(Engine(GRID, ICE, hrennikoff(ICE), **damped), 0.025)
+    else:
+        sheet = ExplicitSheet(engine(0.025, **damped), **options)
     F_u, F_q = np.zeros((GRID.nodes, 2)), np.zeros((GRID.nodes, 3))
     load = np.array([-2e5, 1e5, -3e5])
     states, means = [], []
@@ -227,9 +232,9 @@ def pull(stress):
     return F
 
 
-def pulled(until, stress=2.0, **options):
+def pulled(until, stress=2.0, longest=None, **options):
     """A sheet pulled at both ends at ``stress`` of the strength, suddenly, until some time; 1-ms windows."""
-    sheet = ExplicitSheet(GRID, BRITTLE, hrennikoff(BRITTLE), 1e-3, held=FREE, share=0.0, **options)
+    sheet = ExplicitSheet(engine(1e-3, ice=BRITTLE, sub_steps=SubSteps(longest)), share=0.0, **options)
     F = pull(stress * BRITTLE.sigma_t)
     for k in range(round(until / 1e-3)):
         sheet.advance(1e-3 * k, [NodeLoad("pull", F, np.zeros((GRID.nodes, 3)))], NoContact(), lambda nodes: None)
@@ -242,7 +247,7 @@ def test_a_crack_leaves_its_flanks_standing(alpha):
     ice = replace(BRITTLE, beam_test=BeamTest(length=18.0, width=6.0, failure_load=375e3, factor=0.75))
     stress = 0.99 * ice.sigma_t
     assert ice.stress_beside_crack(GRID.d) < stress
-    sheet = ExplicitSheet(GRID, ice, hrennikoff(ice), 1e-3, held=FREE, share=0.0, alpha=alpha)
+    sheet = ExplicitSheet(engine(1e-3, ice=ice, alpha=alpha), share=0.0)
     x, y = GRID.xy.T
     sheet.state.u[:] = stress / ice.E * np.column_stack((x, -ice.nu * y))
     for k in range(10):
@@ -266,7 +271,7 @@ def test_a_suddenly_pulled_sheet_overshoots():
 
 
 def test_the_time_of_a_failure_does_not_depend_on_the_sub_step():
-    times = [pulled(0.02, step=step).failure_times[0] for step in (1e-4, 5e-5, 2.5e-5)]
+    times = [pulled(0.02, longest=step).failure_times[0] for step in (1e-4, 5e-5, 2.5e-5)]
     assert times == pytest.approx([times[-1]] * 3, rel=0.01)
 
 
@@ -292,7 +297,7 @@ def test_pieces_leave_at_once_and_keep_their_state():
     left = []
     held = np.zeros(GRID.nodes, bool)
     held[GRID.edge_nodes("x-")] = True
-    sheet = ExplicitSheet(GRID, BRITTLE, hrennikoff(BRITTLE), 1e-3, held=held, share=0.5)
+    sheet = ExplicitSheet(engine(1e-3, ice=BRITTLE, held_in_plane=held), share=0.5)
     F = np.zeros((GRID.nodes, 2))
     F[GRID.edge_nodes("x+"), 0] = 5e7
     for k in range(60):

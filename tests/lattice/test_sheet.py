@@ -8,6 +8,7 @@ from lattice.criteria.judge import Judge
 from lattice.criteria.table import Criterion
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.implicit.engine import Engine
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
@@ -41,7 +42,8 @@ def pressed_down(seconds, *, dt=0.05, long_step=1, alpha=0.0, rate=0.006):
     """A floe held at its back, pressed down at the middle of its front; returns sheet, outcomes, times."""
     held = np.zeros(GRID.nodes, bool)
     held[GRID.edge_nodes("x-")] = True
-    sheet = Sheet(GRID, ICE, hrennikoff(ICE), dt, held=held, damping=500.0, alpha=alpha, long_step=long_step)
+    engine = Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=held, damping=500.0, alpha=alpha)
+    sheet = Sheet(engine, dt, long_step=long_step)
     contact = Spring(GRID.edge_nodes("x+")[5:7], rate)
     outcomes = []
 
@@ -83,7 +85,7 @@ def test_long_steps_find_the_same_failure():
 
 
 def test_a_rotating_floe_does_not_fail_by_rotating():
-    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=np.zeros(GRID.nodes, bool))
+    sheet = Sheet(Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=np.zeros(GRID.nodes, bool)), 0.05)
     turn = 0.05
     x = GRID.xy - GRID.xy.mean(axis=0)
     sheet.state.u[:] = np.column_stack((-turn * x[:, 1], turn * x[:, 0]))
@@ -121,7 +123,7 @@ def test_a_part_that_has_turned_as_a_whole_leaves_without_a_failure(held):
     """Whatever its size and where it is held in the plane: its rotation is out of the lattice's range."""
     at = np.zeros(GRID.nodes, bool)
     at[GRID.edge_nodes("x-")] = held
-    sheet = Sheet(GRID, ICE, hrennikoff(ICE), 0.05, held=at)
+    sheet = Sheet(Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=at), 0.05)
     sheet.state.q[:] = np.column_stack((-0.2 * (GRID.xy[:, 0] - 12.0), np.full(GRID.nodes, 0.2), np.zeros(GRID.nodes)))
     out = sheet.advance(0.0, [], NoContact(), lambda n: None)
     assert not out.failed
