@@ -12,7 +12,8 @@ from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import NS, RubbleParticipant, Structure
+from coupling.current import Current
+from coupling.interface import NS, Load, RubbleParticipant, Structure
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
 from coupling.scheduler import Scheduler
@@ -38,7 +39,9 @@ def build(scenario: Scenario) -> Scheduler:
     sheet = build_sheet(scenario, ice, structure)
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
-    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, CONTACTS[scenario.contact.model])
+    contact = CONTACTS[scenario.contact.model]
+    loads = build_loads(scenario)
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads)
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     ledger = Ledger(port.initial_mass)
     if isinstance(rubble, RubblePort):
@@ -118,6 +121,12 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     return Sheet(grid, ice, springs, window, **common, long_step=windows)
 
 
+def build_loads(scenario: Scenario) -> tuple[Load, ...]:
+    """What acts on the sheet beside structure, rubble and still water."""
+    w = scenario.water
+    return () if w.current is None else (Current(w.current, w.density, scenario.rubble.skin_drag),)
+
+
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
     """The rubble: blocks in sections of whole node columns, in a domain that ends behind the structure."""
     r, i = scenario.rubble, scenario.ice
@@ -140,6 +149,7 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         filling_time=r.filling_time,
         feed_speed=scenario.drift.velocity,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,
+        current=scenario.water.current or (0.0, 0.0),
     )
     pitch = r.columns_per_section * grid.d
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)

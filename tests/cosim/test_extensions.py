@@ -106,7 +106,7 @@ def test_a_structure(monkeypatch, usual):
     def wall(s):
         return plane_slope(1.4, top=s.top, toe_depth=20.0, breaking=s.breaking)
 
-    monkeypatch.setitem(KINDS, "wall", Kind(wall, takes=("waterline_radius", "neck_radius")))
+    monkeypatch.setitem(KINDS, "wall", Kind(wall, takes=("slope", "waterline_radius", "neck_radius")))
     assert peak("structure.kind='wall'") > 1.5 * usual
 
 
