@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from cosim.loads import loads_of
 from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.current import Current
-from coupling.interface import NS, Load, RubbleParticipant, Structure
+from coupling.interface import NS, RubbleParticipant, Structure
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
 from coupling.scheduler import Scheduler
@@ -40,8 +40,7 @@ def build(scenario: Scenario) -> Scheduler:
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
     contact = CONTACTS[scenario.contact.model]
-    loads = build_loads(scenario)
-    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads)
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     ledger = Ledger(port.initial_mass)
     if isinstance(rubble, RubblePort):
@@ -119,12 +118,6 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
         return ExplicitSheet(grid, ice, springs, window, **common)
     windows = max(1, round(scenario.fracture.longest_step / window))
     return Sheet(grid, ice, springs, window, **common, long_step=windows)
-
-
-def build_loads(scenario: Scenario) -> tuple[Load, ...]:
-    """What acts on the sheet beside structure, rubble and still water."""
-    w = scenario.water
-    return () if w.current is None else (Current(w.current, w.density, scenario.rubble.skin_drag),)
 
 
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
