@@ -39,7 +39,7 @@ class Structure(Section):
     neck_radius: Length = None  #: the cone narrows to this radius, beyond it stands a cylinder [m]
     sides: Annotated[int, Field(ge=3)] | None = None  #: of a multi-sided cone
     orientation: AngleOrZero = None  #: of its sides: 0 a flat side, 180 deg / sides a corner towards the ice [rad]
-    #: of a body of revolution: heights and radii from its lowest point up to its top [m]
+    #: of a body of revolution: heights and radii from its lowest point up to the height that top says [m]
     profile: ProfilePoints = None
     toe_depth: Length = None  #: depth of the structure's lower end, below it nothing is touched [m]
     top: Length = 5.0  #: height of the structure above water; over a lower one ice may ride [m]
