@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cosim.loads import loads_of
 from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
@@ -42,7 +43,8 @@ def build(scenario: Scenario) -> Scheduler:
     sheet = build_sheet(scenario, ice, structure)
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
-    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, CONTACTS[scenario.contact.model])
+    contact = CONTACTS[scenario.contact.model]
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     ledger = Ledger(port.initial_mass)
     if isinstance(rubble, RubblePort):
@@ -152,6 +154,7 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         filling_time=r.filling_time,
         feed_speed=scenario.drift.velocity,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,
+        current=scenario.water.current or (0.0, 0.0),
     )
     pitch = r.columns_per_section * grid.d
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)

@@ -1,6 +1,6 @@
 """Kinds of structure by name: which keys of [structure] each takes, and how it is built from them.
 
-A kind from outside is one more line: ``KINDS["mine"] = Kind(build, needs=("waterline_radius",))``.
+A kind from outside is one more line: ``KINDS["mine"] = Kind(build, needs=("slope", "waterline_radius"))``.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from coupling.interface import Structure
-from coupling.structure import DEEP, cone, multi_sided_cone, plane_slope
+from coupling.structure import DEEP, Profile, Revolved, cone, multi_sided_cone, plane_slope
 
 
 class Measures(Protocol):
@@ -24,11 +24,12 @@ class Measures(Protocol):
     neck_radius: float | None
     sides: int
     orientation: float | None
+    profile: tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of structure. ``slope``, ``breaking``, ``top`` and ``toe_depth`` are there for all of them."""
+    """A kind of structure. ``breaking``, ``top`` and ``toe_depth`` are there for all of them."""
 
     build: Callable[[Measures], Structure]
     needs: tuple[str, ...] = ()  #: further keys without which it cannot be built
@@ -57,8 +58,15 @@ def _plane(s: Measures) -> Structure:
     return plane_slope(s.slope, top=s.top, toe_depth=toe_depth, breaking=s.breaking)
 
 
+def _profile(s: Measures) -> Structure:
+    return Revolved(Profile(s.profile))
+
+
 KINDS: dict[str, Kind] = {
-    "cone": Kind(_cone, needs=("waterline_radius",), takes=("neck_radius",)),
-    "multi-sided-cone": Kind(_multi_sided, needs=("waterline_radius", "sides"), takes=("neck_radius", "orientation")),
-    "plane": Kind(_plane),
+    "cone": Kind(_cone, needs=("slope", "waterline_radius"), takes=("neck_radius",)),
+    "multi-sided-cone": Kind(
+        _multi_sided, needs=("slope", "waterline_radius", "sides"), takes=("neck_radius", "orientation")
+    ),
+    "plane": Kind(_plane, needs=("slope",)),
+    "profile": Kind(_profile, needs=("profile",)),
 }

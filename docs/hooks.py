@@ -105,7 +105,7 @@ def _value(field: FieldInfo) -> str:
     """What may be written: number with unit, words, limits."""
     unit = _unit(field)
     if unit is not None:
-        return f'`"{unit.example}"`'
+        return f"`{unit.written}`"
     words = [w for kind in _flat(field.annotation) if get_origin(kind) is Literal for w in get_args(kind)]
     kinds = [k for k in _flat(field.annotation) if get_origin(k) is not Literal and k is not type(None)]
     shown = [f'`"{w}"`' for w in words] + [_kind(k) for k in kinds]

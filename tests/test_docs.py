@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import importlib.util
+import math
 import re
 import shlex
 import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,15 +19,25 @@ from pydantic import Field
 
 from cosim.analysis.features import QUANTITIES
 from cosim.analysis.reference import parse_reference
+from cosim.build import build_structure
 from cosim.cli.entry import app
+from cosim.loads import LOADS
+from cosim.recording import messages
+from cosim.recording.channels import CHANNELS
+from cosim.recording.reader import messages as stored
+from cosim.recording.reader import read_run
+from cosim.recording.writer import Recorder
+from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.section import Section
 from cosim.scenario.units import Length
+from cosim.structures import KINDS
 from coupling import schemes
 from coupling.ledger import Ledger
 from coupling.scheduler import Scheduler
 from lattice import stiffness
+from lattice.criteria.table import CRITERIA
 from lattice.ice import Ice
 
 ROOT = Path(__file__).parents[1]
@@ -157,6 +169,64 @@ def test_the_first_own_case_is_a_scenario_and_its_measurements_a_reference(tmp_p
 def _titled(title: str) -> str:
     """The example of this title."""
     return next(text for kind in ("python", "toml") for _, name, text in _blocks(kind) if name == title)
+
+
+def _adds(monkeypatch: pytest.MonkeyPatch, title: str, table: dict[str, Any], name: str) -> dict[str, Any]:
+    """Runs an example that adds a line to a table, which loses it again after the test; the names that it makes."""
+    monkeypatch.setitem(table, name, None)
+    made: dict[str, Any] = {"__name__": "example"}
+    exec(compile(_titled(title), title, "exec", dont_inherit=True), made)
+    assert table[name] is not None
+    return made
+
+
+QUICK = ("sheet.nodes=[20, 20]", "drift.velocity='0.4 m/s'", "contact.strength='800 kPa'", "rubble.enabled=false")
+
+
+def test_the_example_of_a_criterion_fails_the_first_cell(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = _adds(monkeypatch, "largest_strain.py", CRITERIA, "largest-strain")
+    assert made["largest_strain"] is CRITERIA["largest-strain"].judge
+    options = (*QUICK, "scenario.duration='4 s'", "fracture.criteria=['largest-strain']")
+    first = run_scenario(load_scenario("van_vliet_2018_floe_55m_centre", options)).events[0]
+    assert (first.kind, first.cause) == ("cell_failure", "largest-strain")
+
+
+def test_the_example_of_a_structure_pushes_aside(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without friction the load lies along the normal; the surface has the normal that it says, front and overlap."""
+    _adds(monkeypatch, "askew_slope.py", KINDS, "askew-slope")
+    smooth = ("structure.kind='askew-slope'", "contact.friction=0", "rubble.enabled=false", "scenario.duration='1 s'")
+    scenario = load_scenario("upward_plane", smooth)
+    slope, e = build_structure(scenario), 1e-6
+    dx_dy, dx_dz = (
+        (slope.face_x(3.0 + a * e, -1.0 + b * e) - slope.face_x(3.0, -1.0)) / e for a, b in ((1, 0), (0, 1))
+    )
+    normal = np.array([-1.0, dx_dy, dx_dz]) / np.linalg.norm([1.0, dx_dy, dx_dz])
+    assert slope.normal(3.0, -1.0) == pytest.approx(normal, rel=1e-6)
+    overlap, n = slope.overlap(np.array([float(slope.face_x(3.0, -1.0)) + 0.2]), np.array([[3.0]]), np.array([-1.0]))
+    assert overlap[0, 0] == pytest.approx(0.2)
+    assert n[0, 0] == pytest.approx(normal, rel=1e-6)
+    fx, fy, _, _ = run_scenario(scenario).peaks.value
+    assert fx > 1e3
+    assert fy / fx == pytest.approx(-math.tan(0.2), rel=1e-6)
+
+
+def test_the_example_of_a_load_has_its_terms(monkeypatch: pytest.MonkeyPatch) -> None:
+    _adds(monkeypatch, "wind.py", LOADS, "wind")
+    options = (*QUICK, "scenario.duration='1 s'")
+    ledger = run_scenario(load_scenario("van_vliet_2018_floe_55m_centre", options)).ledger
+    work = 1.3 * 1.5e-3 * 20.0**2 * 55.0**2 * 0.4  # force times drift, after the one second
+    assert ledger["wind_load_work"] == pytest.approx(work, rel=0.1)
+
+
+def test_the_example_of_a_channel_stands_in_a_recording(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    _adds(monkeypatch, "overturning.py", CHANNELS, "/load/overturning")
+    options = (*QUICK, "scenario.duration='0.5 s'")
+    with Recorder(tmp_path / "run.mcap") as recorder:
+        run_scenario(load_scenario("van_vliet_2018_floe_55m_centre", options), [recorder])
+    moment = [
+        messages.Ledger.FromString(data).value[0] for _, _, data in stored(tmp_path / "run.mcap", ["/load/overturning"])
+    ]
+    assert moment == pytest.approx(20.0 * read_run(tmp_path / "run.mcap").component("fx"))
 
 
 def test_the_example_of_a_stiffness_set_is_in_the_table(monkeypatch: pytest.MonkeyPatch) -> None:

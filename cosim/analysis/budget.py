@@ -27,13 +27,19 @@ def rows(run: RunData) -> list[dict[str, Any]]:
     return table + [_row(run, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
 
 
+def carriers(run: RunData) -> tuple[str, ...]:
+    """Names of the terms of a recorded budget: those of every run, then those of its loads on the sheet."""
+    own = (name.removeprefix("fz_") for name in run.budget if name.startswith("fz_"))
+    return (*TERMS, *(name for name in own if name not in (*TERMS, "residual")))
+
+
 def _row(run: RunData, when: str, time: str, axis: str, windows: slice) -> dict[str, Any]:
     length = (run.t_ns - run.begin_ns)[windows]
 
     def mean(values: Array) -> float:
         return float(np.average(values[windows], weights=length)) / 1e6
 
-    terms = {name.replace("_", " "): mean(run.budget[f"{axis}_{name}"]) for name in (*TERMS, "residual")}
+    terms = {name.replace("_", " "): mean(run.budget[f"{axis}_{name}"]) for name in (*carriers(run), "residual")}
     return {
         "when": when,
         "time": time,

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import radians
+from math import acos, isinf, radians
 from typing import Any
+
+import numpy as np
 
 from cosim.baselines.case import Case
 from cosim.scenario.model import ScenarioModel
+from cosim.structures import KINDS
 
 RUBBLE_HEIGHT = 2.0  #: thicknesses
 POROSITY = 0.3  #: IceFloe, test GLA
@@ -28,15 +31,16 @@ class Given:
 def given(model: ScenarioModel) -> Given:
     """The formulas' case; what [baseline] does not hold has the defaults of this file."""
     i, s, water = model.ice, model.structure, model.water
-    wide = s.waterline_radius is None
-    width = float(model.sheet.width) if wide else 2.0 * s.waterline_radius
+    slope, radius = _met_at_the_waterline(model)
+    wide = isinf(radius)
+    width = float(model.sheet.width) if wide else 2.0 * radius
     defaults = _defaults(model)
     stated = {key: getattr(model.baseline, key) for key in defaults}
     value: dict[str, Any] = {k: defaults[k][0] if v is None else v for k, v in stated.items()}
     case = Case(
         h=i.thickness,
         w=width,
-        a=s.slope,
+        a=slope,
         mu=model.contact.friction,
         sigma_f=i.flexural_strength,
         E=i.youngs_modulus,
@@ -59,13 +63,24 @@ def given(model: ScenarioModel) -> Given:
     return Given(case, {k: defaults[k][1] for k, v in stated.items() if v is None and defaults[k][1]})
 
 
+def _met_at_the_waterline(model: ScenarioModel) -> tuple[float, float]:
+    """Slope from the horizontal [rad] and half the width [m] of the structure; the width may be infinite."""
+    s: Any = model.structure  # as `cosim.build` hands it on: which keys are there is checked by kind
+    if s.slope is not None and s.waterline_radius is not None:
+        return float(s.slope), float(s.waterline_radius)
+    structure = KINDS[s.kind].build(s)
+    steepness = acos(abs(float(structure.normal_z(np.zeros(1))[0])))
+    return steepness if s.slope is None else float(s.slope), structure.half_width
+
+
 def _defaults(model: ScenarioModel) -> dict[str, tuple[Any, str]]:
     """Value and wording by key; no wording where the scenario says it elsewhere."""
     i, s, friction = model.ice, model.structure, model.rubble.friction_ice_ice
-    slope = RUBBLE_SLOPE * s.slope
+    slope = RUBBLE_SLOPE * _met_at_the_waterline(model)[0]
     degrees = f"{slope / radians(1.0):g} deg"
     own = isinstance(friction, float)
-    neck = 0.0 if s.neck_radius is None else 2.0 * s.neck_radius
+    narrow_end = s.neck_radius or 0.0 if s.profile is None else min(r for _, r in s.profile)
+    neck = 2.0 * narrow_end
     top = f"{neck:g} m, the cone's narrow end" if neck else "0 m, the cone's tip"
     return {
         "rubble_height": (RUBBLE_HEIGHT * i.thickness, f"{RUBBLE_HEIGHT * i.thickness:g} m, two thicknesses"),

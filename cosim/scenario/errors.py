@@ -111,5 +111,5 @@ def _example(model: type[BaseModel], location: list[str]) -> str:
         return f"the section [{'.'.join(location)}]"
     unit = next((m for m in field.metadata if isinstance(m, Unit)), None)
     if unit is not None:
-        return f'{location[-1]} = "{unit.example}"'
+        return f"{location[-1]} = {unit.written}"
     return f"{location[-1]} = {EXAMPLES.get(location[-1], '...')}"

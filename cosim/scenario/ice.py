@@ -17,6 +17,7 @@ from cosim.scenario.units import (
     Force,
     Length,
     LengthOrZero,
+    PlanVelocity,
     Stress,
     Time,
     TimeOrZero,
@@ -94,11 +95,14 @@ class Ice(Section):
 
 
 class Water(Section):
-    """[water] A Kelvin foundation to the sheet, still water to the blocks."""
+    """[water] A Kelvin foundation to the sheet; the blocks float, are dragged and drift in it."""
 
     density: Density  #: rho_w [kg/m3]
     gravity: Acceleration = 9.81  #: g [m/s2]
     damping: Coefficient = 0.1  #: hydrodynamic, as share of sqrt(k_f rho_i h) (thesis 4.2.1)
+    #: velocity of the water along x and y in the frame of the structure; given, it also drags on the sheet's underside
+    #: with rubble.skin_drag, also if it is zero; left out, the water is still and does not drag on the sheet [m/s]
+    current: PlanVelocity = None
 
 
 class Sheet(Section):

@@ -45,7 +45,7 @@ class ScenarioModel(Section):
 
     @model_validator(mode="after")
     def _upward_breaking_can_run(self) -> Self:
-        draft, toe = self.ice.thickness * self.ice.density / self.water.density, self.structure.toe_depth
+        draft, toe = self.ice.thickness * self.ice.density / self.water.density, self.structure.toe
         if self.structure.breaking == "downward":
             return self
         if toe is not None and toe <= draft:

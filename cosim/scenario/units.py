@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from types import GenericAlias
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator
@@ -23,6 +24,12 @@ class Unit:
 
     si: str  #: unit of the stored float
     example: str  #: a value that a user may write
+    listed: str = ""  #: for a key that holds several of them: TOML that a user may write
+
+    @property
+    def written(self) -> str:
+        """TOML of an example."""
+        return self.listed or f'"{self.example}"'
 
 
 @cache
@@ -80,6 +87,22 @@ def _above_zero(value: float) -> float:
     return value
 
 
+def _any_sign(value: float) -> float:
+    return value
+
+
+def _list_of(unit: Unit, *kinds: Any) -> Any:
+    """A list of ``kinds``, of any number where the second is an ellipsis; read as a tuple."""
+
+    def as_tuple(value: object) -> object:
+        if not isinstance(value, list | tuple) or (... not in kinds and len(value) != len(kinds)):
+            count = "several" if ... in kinds else f"{len(kinds)}"
+            raise _fault(f"write {count} values in brackets, for example {unit.written}")
+        return tuple(value)
+
+    return Annotated[GenericAlias(tuple, kinds), unit, BeforeValidator(as_tuple)]
+
+
 def _quantity(si: str, example: str, check: Callable[[float], float]) -> Any:
     unit = Unit(si, example)
     return Annotated[float, unit, AfterValidator(check), BeforeValidator(lambda value: to_si(value, unit))]
@@ -101,3 +124,8 @@ StressOrZero = _quantity("Pa", "0 kPa", _at_least_zero)
 LengthOrZero = _quantity("m", "19 m", _at_least_zero)
 EnergyPerAreaOrZero = _quantity("J/m^2", "15 J/m^2", _at_least_zero)
 VolumeOrZero = _quantity("m^3", "3000 m^3", _at_least_zero)
+_AnyVelocity = _quantity("m/s", "0.1 m/s", _any_sign)
+_Height = _quantity("m", "-6 m", _any_sign)
+PlanVelocity = _list_of(Unit("m/s", "0.1 m/s", '["0.1 m/s", "0 m/s"]'), _AnyVelocity, _AnyVelocity)
+_Point = _list_of(Unit("m", "-6 m", '["-6 m", "9 m"]'), _Height, LengthOrZero)
+ProfilePoints = _list_of(Unit("m", "-6 m", '[["-6 m", "9 m"], ["5 m", "20 m"]]'), _Point, ...)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cosim.analysis.budget import carriers
 from cosim.analysis.run_data import RunData
-from coupling.budget import TERMS
 from coupling.interface import Array
 
 if TYPE_CHECKING:
@@ -24,16 +24,19 @@ COLOURS = {
     "held": "#5aa9c4",
     "staggering": "#e3c04b",
 }
+OTHER = "#20707a"  #: of loads on the sheet
 
 
 def draw(figure: Figure, run: RunData) -> None:
     """Terms over time, stacked from zero up where they lift the structure and down where not; the total on top."""
     axes = figure.subplots(2, 1, sharex=True)
+    drawn = carriers(run)
+    colours = [COLOURS.get(name, OTHER) for name in drawn]
     for ax, axis in zip(axes, ("fz", "fx"), strict=True):
-        terms = np.array([run.budget[f"{axis}_{name}"] for name in TERMS]) / 1e6
+        terms = np.array([run.budget[f"{axis}_{name}"] for name in drawn]) / 1e6
         for side, label in ((np.maximum(terms, 0.0), True), (np.minimum(terms, 0.0), False)):
-            names = [name.replace("_", " ") for name in TERMS] if label else ()
-            ax.stackplot(run.t, side, colors=[COLOURS[name] for name in TERMS], labels=names, alpha=0.8, lw=0)
+            names = [name.replace("_", " ") for name in drawn] if label else ()
+            ax.stackplot(run.t, side, colors=colours, labels=names, alpha=0.8, lw=0)
         total = run.component(axis) / 1e6
         ax.plot(run.t, total, "k", lw=0.7, label="total")
         ax.set_ylabel(f"{axis.capitalize()} [MN]")

@@ -12,7 +12,7 @@ import numpy as np
 
 from cosim.analysis.run_data import RunData
 from cosim.show import budget_figure
-from coupling.energy import LIMIT
+from coupling.energy import LIMIT, LOAD_WORK
 from coupling.interface import PHASES, Array
 
 if TYPE_CHECKING:
@@ -87,13 +87,14 @@ def draw_mass(figure: Figure, run: RunData) -> None:
 def draw_energy(figure: Figure, run: RunData) -> None:
     """Where the drift's work is or went, what else put energy in (below zero), and what is not explained."""
     ax, low = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
-    work = run.ledger["drift_work"] / 1e6
+    loads = [name for name in run.ledger if name.endswith(LOAD_WORK)]
+    work = energy_group(run, ["drift_work", *loads]) / 1e6
     groups = {name: energy_group(run, names) / 1e6 for name, (_, names) in ENERGY.items()}
     colours = [colour for colour, _ in ENERGY.values()]
     ax.stackplot(run.t, np.maximum(list(groups.values()), 0.0), labels=list(groups), colors=colours, lw=0)
     ax.stackplot(run.t, np.minimum(list(groups.values()), 0.0), colors=colours, lw=0)
     ax.plot(run.t, work, "w", lw=3.0)
-    ax.plot(run.t, work, "k", lw=1.4, label="work of the drift")
+    ax.plot(run.t, work, "k", lw=1.4, label="work of the drift" + ", of loads" * bool(loads))
     ax.axhline(0.0, color="k", lw=0.6)
     ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
     ax.set(ylabel="energy [MJ]", xlim=(0.0, run.t[-1]))

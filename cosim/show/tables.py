@@ -10,7 +10,7 @@ from rich.text import Text
 from cosim.analysis.compare import Row
 from cosim.show.cells import compare_cells, number
 from cosim.show.console import new_table, stdout
-from coupling.energy import STORES
+from coupling.energy import LOAD_WORK, STORES
 from coupling.interface import PHASES
 
 
@@ -56,7 +56,7 @@ def ledger_lines(ledger: dict[str, float | None]) -> list[str]:
     terms = [
         (name, value)
         for name, value in known.items()
-        if (name in STORES or name.endswith("_loss")) and abs(value) >= max(least, 1.0)
+        if (name in STORES or name.endswith(("_loss", LOAD_WORK))) and abs(value) >= max(least, 1.0)
     ]
     lines = ["ledger: " + ", ".join(errors)]
     if "drift_work" in known:

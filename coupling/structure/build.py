@@ -59,8 +59,8 @@ def plane_slope(
         raise ValueError(f"breaking is '{breaking}'; choose 'downward' or 'upward'")
     if top <= 0 or toe_depth <= 0:
         raise ValueError(f"slope from {-toe_depth:g} m to {top:g} m misses the waterline; give top and toe_depth > 0")
-    run = (1 if breaking == "downward" else -1) / _checked_tan(slope_rad)
-    return PlaneSlope(Profile(((-toe_depth, -toe_depth * run), (top, top * run))))
+    cot = (1 if breaking == "downward" else -1) / _checked_tan(slope_rad)
+    return PlaneSlope(Profile(((-toe_depth, -toe_depth * cot), (top, top * cot))))
 
 
 def _cone_profile(
@@ -72,20 +72,20 @@ def _cone_profile(
     breaking: str,
 ) -> Profile:
     """Profile of `cone`."""
-    run = 1 / _checked_tan(slope_rad)
+    cot = 1 / _checked_tan(slope_rad)
     neck = _checked_neck(neck_radius, waterline_radius)
     if top <= 0:
         raise ValueError(f"top of the structure is {top:g} m, below the waterline; give a height > 0")
     if toe_depth is not None and toe_depth <= 0:
         raise ValueError(f"toe depth is {toe_depth:g} m, so the toe lies above the waterline; give a depth > 0")
-    reach = (waterline_radius - neck) / run  # distance of the neck from the waterline
+    reach = (waterline_radius - neck) / cot  # distance of the neck from the waterline
     if breaking == "downward":
         toe = toe_depth if toe_depth is not None else (reach if neck_radius is None else DEEP)
-        return Profile(_cut([(-DEEP - reach, neck), (-reach, neck), (top, waterline_radius + top * run)], -toe, top))
+        return Profile(_cut([(-DEEP - reach, neck), (-reach, neck), (top, waterline_radius + top * cot)], -toe, top))
     if breaking == "upward":
         if toe_depth is None:
             raise ValueError("an upward-breaking cone widens with depth and needs toe_depth; give the depth of its rim")
-        rim = (-toe_depth, waterline_radius + toe_depth * run)
+        rim = (-toe_depth, waterline_radius + toe_depth * cot)
         return Profile(_cut([rim, (reach, neck), (reach + DEEP, neck)], -toe_depth, top))
     raise ValueError(f"breaking is '{breaking}'; choose 'downward' or 'upward'")
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import astuple
+from types import SimpleNamespace
 
 import pytest
 
 from cosim.build import build
+from cosim.loads import LOADS
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.run import run_scenario
@@ -106,8 +108,26 @@ def test_a_structure(monkeypatch, usual):
     def wall(s):
         return plane_slope(1.4, top=s.top, toe_depth=20.0, breaking=s.breaking)
 
-    monkeypatch.setitem(KINDS, "wall", Kind(wall, takes=("waterline_radius", "neck_radius")))
+    monkeypatch.setitem(KINDS, "wall", Kind(wall, takes=("slope", "waterline_radius", "neck_radius")))
     assert peak("structure.kind='wall'") > 1.5 * usual
+
+
+def test_a_load(monkeypatch, usual):
+    """A wind over the whole floe, against the drift: it holds the ice back and has its place in budget and energy."""
+
+    class Wind:
+        name = "wind"
+
+        def on_sheet(self, t, sheet):
+            return (sheet.area * -50.0)[:, None] * [1.0, 0.0, 0.0]
+
+    monkeypatch.setitem(LOADS, "wind", lambda scenario: Wind())
+    frames = []
+    observer = SimpleNamespace(on_start=lambda info: None, on_frame=frames.append, on_close=lambda: None)
+    windy = run_scenario(load_scenario(CASE, SHORT), [observer])
+    assert windy.peaks.value[0] != usual
+    assert [f.budget["fx_wind"] for f in frames] == pytest.approx([-50.0 * 55.0**2] * 20, rel=1e-9)
+    assert windy.ledger["wind_load_work"] < 0.0
 
 
 @pytest.mark.parametrize(
