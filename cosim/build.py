@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cosim.errors import InputError
 from cosim.loads import loads_of
 from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
@@ -117,7 +118,10 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     dynamic = scenario.fracture.propagation == "dynamic"
     if scenario.fracture.cracks == "closing":
         measured = build_measured(scenario)
-        return cracking_sheet(grid, ice, springs, window, measured, dynamic=dynamic, criteria=criteria, **options)
+        try:
+            return cracking_sheet(grid, ice, springs, window, measured, dynamic=dynamic, criteria=criteria, **options)
+        except ValueError as error:
+            raise InputError(f"{scenario.name}: {error}") from error
     if dynamic:
         return ExplicitSheet(ExplicitEngine(grid, ice, springs, window, **options), criteria=criteria)
     windows = max(1, round(scenario.fracture.longest_step / window))

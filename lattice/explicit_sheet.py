@@ -42,6 +42,7 @@ class ExplicitSheet(Floe):
 
     _written = (*Floe._written, "failure_times", "failed_cells", "_easing")
     engine: ExplicitEngine
+    lively = LIVELY
 
     def __init__(
         self,
@@ -122,7 +123,7 @@ class ExplicitSheet(Floe):
         self.energy.hold += 0.5 * time * (holding + self._holding(w.load))
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
-        self._lively = out.failed or change > LIVELY * self.energy.stored
+        self._lively = out.failed or change > self.lively * self.energy.stored
         return out
 
     def _end(self, w: Window, out: Outcome) -> None:

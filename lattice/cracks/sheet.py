@@ -18,7 +18,7 @@ from lattice.criteria.table import CRITERIA, Criterion
 from lattice.explicit.engine import Marched
 from lattice.explicit.forces import PointForces
 from lattice.explicit.window import Window
-from lattice.explicit_sheet import CONTACT_TIME, ExplicitSheet
+from lattice.explicit_sheet import CONTACT_TIME, LIVELY, ExplicitSheet
 from lattice.floe import LOOSE, Release
 from lattice.grid import Array, BoolArray, IntArray
 from lattice.loads import Loads, total
@@ -33,6 +33,7 @@ class CrackingSheet(ExplicitSheet):
     """`ExplicitSheet` with layered cells; ``intact`` are those that have not begun to crack."""
 
     engine: CrackingEngine
+    lively = 0.05 * LIVELY  #: encounters last longer, and a floe that is pressed under water stores more
 
     def __init__(
         self,
