@@ -13,8 +13,6 @@ from coupling.energy import EnergyBalance
 from coupling.interface import NS, HandOver, SimulationError
 
 ENERGY_TOLERANCE = 1e-3  #: of the work done on the sheet
-#: of the drifting floe's kinetic energy: work that is less is no measure of a residual, in the first windows [-]
-FLOOR = 0.01
 MASS_TOLERANCE = 1e-12  #: of the initial mass
 
 
@@ -72,9 +70,7 @@ class Ledger:
             "mass_error": error,
         }
         if sheet_energy:
-            relative = self._sheet(sheet_energy)
-            least = min(1.0, self._work / max(FLOOR * self.energy.floor, 1.0))
-            self._check("energy of the sheet", relative * least, t_ns, ENERGY_TOLERANCE)
+            self._check("energy of the sheet", self._sheet(sheet_energy), t_ns, ENERGY_TOLERANCE)
             books["sheet_energy_residual"] = sheet_energy["sheet_energy_residual"]
         return books | self.energy.close(t_ns, sheet_energy, rubble_energy)
 

@@ -132,7 +132,8 @@ class ExplicitSheet(Floe):
         self._book_half(0.5, w, touch)
         self.utilisation = self._utilisation(self.state)
         self.energy.measure(self.state, self.live_cells, self.present)
-        self.energy.scheme = -self.engine.ripple
+        late = 0.5 * self.engine.dt * self.energy.loss_rate(self.state, self.live_cells, self.present)
+        self.energy.scheme = late - self.engine.ripple  # damping of the half sub-step that the march has not made
         out.contact_mean, out.contact_nodes = w.contact_mean(self.dt)
         out.contact_end, out.parts = touch.force, self.parts
 
@@ -214,8 +215,8 @@ class ExplicitSheet(Floe):
     def _book_half(self, part: float, w: Window, touch: Touch) -> None:
         """Work in the half sub-step by which the velocities of the march lie before the ends of a window.
 
-        With E = H + dt v(n-1/2) . F / 2 + dt^2 a . M a / 8 for what leapfrog conserves, H, exactly; with the velocity at
-        n a force that jumps between two windows would leave dt^2 a . F / 4.
+        With E = H + dt v(n-1/2) . (F - C v) / 2 + dt^2 a . M a / 8 for what leapfrog conserves, H, exactly; with the
+        velocity at n a force that jumps between two windows would leave dt^2 a . F / 4.
         """
         v, time = self.engine.get(self.engine.motion.v), part * self.engine.dt
         f = touch.at_once()

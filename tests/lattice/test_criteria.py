@@ -8,9 +8,11 @@ import pytest
 from lattice.contact import NoContact
 from lattice.criteria.laws import combined_tension, crack_tip_bending
 from lattice.criteria.table import CRITERIA, THESIS, Criterion, chosen, needed
+from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
+from lattice.implicit.engine import Engine
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.state import State
@@ -40,7 +42,12 @@ X, Y = GRID.xy.T
 
 
 def sheet(engine, criteria=THESIS, ice=ICE, **options):
-    return engine(GRID, ice, hrennikoff(ice), 1e-3, held=FREE, share=0.0, criteria=criteria, **options)
+    if engine is Sheet:
+        return Sheet(
+            Engine(GRID, ice, hrennikoff(ice), held_in_plane=FREE), 1e-3, share=0.0, criteria=criteria, **options
+        )
+    made = ExplicitEngine(GRID, ice, hrennikoff(ice), 1e-3, held_in_plane=FREE)
+    return ExplicitSheet(made, share=0.0, criteria=criteria, **options)
 
 
 def rough(seed=3, size=2e-4):

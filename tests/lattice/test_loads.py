@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from lattice.contact import NoContact
+from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.grid import Grid
 from lattice.ice import Ice
+from lattice.implicit.engine import Engine
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
@@ -29,7 +31,10 @@ def loads():
 def floe(engine):
     held = np.zeros(GRID.nodes, bool)
     held[GRID.edge_nodes("x-")] = True
-    return engine(GRID, ICE, hrennikoff(ICE), 0.025, held=held, damping=2000.0, alpha=1e-3)
+    options = {"held_in_plane": held, "damping": 2000.0, "alpha": 1e-3}
+    if engine is Sheet:
+        return Sheet(Engine(GRID, ICE, hrennikoff(ICE), **options), 0.025)
+    return ExplicitSheet(ExplicitEngine(GRID, ICE, hrennikoff(ICE), 0.025, **options))
 
 
 def press(engine, make):
