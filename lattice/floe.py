@@ -90,9 +90,13 @@ class Floe(ABC):
         """Puts the unbroken sheet into equilibrium with loads; StepError if they break it."""
         self.state = self.engine.equilibrium(*total(loads, self.grid.nodes))
         self.utilisation = self._utilisation(self.state)
+        self._check_rest()
+        self.energy.begin(self.state, self.live_cells, self.present, loads)
+
+    def _check_rest(self) -> None:
+        """Refuses a start at which cells have given way already."""
         if self.utilisation.max() >= 1.0:
             raise StepError(f"the sheet at rest breaks under its load (utilisation {self.utilisation.max():.2f})")
-        self.energy.begin(self.state, self.live_cells, self.present, loads)
 
     def answer(self, nodes: IntArray) -> tuple[Array, Array]:
         """Displacements (k, 2) [m/N] and velocities (k, 2) [m/(N s)] of nodes in x and z under one newton on each.

@@ -6,16 +6,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lattice.cracks.beam import Beam, layer_strength, standard_beam
-from lattice.cracks.engine import CrackingEngine
+from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import law_of
 from lattice.cracks.sheet import PRINCIPAL, CrackingSheet
 from lattice.criteria.table import Criterion
-from lattice.explicit.engine import SubSteps
+from lattice.explicit.engine import TRUE_INERTIA
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.stiffness import Springs
-
-SCALING = 4.0  #: of the fast inertia in slow interaction: 1 instead of 4 moves the peak of the 165 m floe by 0.7 % [-]
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,6 @@ def cracking_sheet(
         strength = layer_strength(ice, measured.friction, measured.fracture_energy, beam, grid.d)
     layers = replace(ice, sigma_t=strength, sigma_f=strength, beam_test=None)
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
-    sub_steps = SubSteps(scaling=1.0 if dynamic else SCALING)
+    sub_steps = TRUE_INERTIA if dynamic else SLOW
     engine = CrackingEngine(grid, layers, springs, window, law=law, **{"sub_steps": sub_steps, **options})
     return CrackingSheet(engine, criteria=criteria)

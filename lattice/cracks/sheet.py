@@ -21,7 +21,7 @@ from lattice.explicit.window import Window
 from lattice.explicit_sheet import CONTACT_TIME, LIVELY, ExplicitSheet
 from lattice.floe import LOOSE, Release
 from lattice.grid import Array, BoolArray, IntArray
-from lattice.loads import Loads, total
+from lattice.loads import Loads
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import TURNED
 from lattice.strain import CellState
@@ -46,12 +46,10 @@ class CrackingSheet(ExplicitSheet):
         """As `ExplicitSheet`; the strengths of the ice are those of its layers."""
         super().__init__(engine, share=share, contact_time=contact_time, criteria=criteria)
         self._pull = 0.0  #: impulse along x that held nodes have taken from layered cells in this window [N s]
+        self._pulls = 0.0, 0.0  #: force along x that they take, at the last two looks of `_holding` [N]
 
-    def rest_under(self, loads: Loads) -> None:
-        """As `Floe.rest_under`; cells that are overloaded at rest begin to crack in the first window."""
-        self.state = self.engine.equilibrium(*total(loads, self.grid.nodes))
-        self.utilisation = self._utilisation(self.state)
-        self.energy.begin(self.state, self.live_cells, self.present, loads)
+    def _check_rest(self) -> None:
+        """Cells that are overloaded at rest begin to crack in the first window."""
 
     # ---- what begins to crack ---------------------------------------------------------------------------------
 
@@ -174,11 +172,12 @@ class CrackingSheet(ExplicitSheet):
         return out
 
     def _march(self, w: Window, done: int) -> Marched:
-        before = self.engine.pull(self.support.held)
         out = super()._march(w, done)
-        time = out.steps * self.engine.dt
-        self._pull += 0.5 * time * (before + self.engine.pull(self.support.held))
+        self._pull += 0.5 * (out.steps * self.engine.dt) * sum(self._pulls)
         return out
 
     def _holding(self, load: PointForces) -> float:
-        return super()._holding(load) + self.engine.pull(self.support.held)
+        """As `ExplicitSheet`, which looks before and after the sub-steps of a block."""
+        pull = self.engine.pull(self.support.held)
+        self._pulls = self._pulls[1], pull
+        return super()._holding(load) + pull

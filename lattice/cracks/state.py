@@ -84,13 +84,6 @@ class LayeredCells:
         thrust: Array = self._cracks.thrust[: self.count]
         return thrust
 
-    @property
-    def angle(self) -> Array:
-        """Direction n from the x axis, (count,) [rad]."""
-        c, s = self._cracks.axis[:, : self.count]
-        angle: Array = np.arctan2(s, c)
-        return angle
-
     def parting(self, d: float) -> tuple[BoolArray, Array, Array]:
         """Across n and t, (count, 2) each: cracked through; opening of the middle and slip [m] of cells of size d."""
         c, n = self._cracks, self.count

@@ -23,9 +23,8 @@ import numpy as np
 from scipy.optimize import fsolve
 
 from cosim.verify.case import CaseResult, Figure, near, value
-from lattice.cracks.engine import CrackingEngine
+from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, N
-from lattice.explicit.engine import SubSteps
 from lattice.explicit.forces import NOTHING, Touch
 from lattice.explicit.layout import W
 from lattice.grid import Array, Grid
@@ -96,7 +95,7 @@ def lattice_arch(p: dict[str, Any], sigma_c: float, seconds: float) -> Arch:
     law = CrackLaw(E=p["E"], nu=0.0, sigma_c=sigma_c, cohesion=0.0, mu=MU, e_0=1e-5, e_f=1e-5)
     damping = 0.5 * ice.rho_i * h  # a few percent of the critical one, and no load to speak of at this speed
     e = CrackingEngine(grid, ice, hrennikoff(ice), seconds, law=law, held_in_plane=walls, damping=damping, alpha=2e-4,
-                       sub_steps=SubSteps(scaling=4.0))  # fmt: skip
+                       sub_steps=SLOW)  # fmt: skip
     for kick in e.mesh.kick:
         kick[walls.reshape(grid.nx, grid.ny).nonzero()] = 0.0
     live = np.ones((grid.nx - 1, grid.ny - 1), bool)

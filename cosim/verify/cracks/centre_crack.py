@@ -15,10 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
-from lattice.cracks.engine import CrackingEngine
+from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, N
 from lattice.criteria.table import CRITERIA
-from lattice.explicit.engine import SubSteps
 from lattice.explicit.forces import NOTHING, Touch
 from lattice.explicit.layout import W
 from lattice.grid import Array, BoolArray, Grid
@@ -63,7 +62,7 @@ def engine_of(p: dict[str, Any], nodes: int, crack: str) -> tuple[CrackingEngine
     law = CrackLaw(E=p["E"], nu=p["nu"], sigma_c=p["sigma_c"], cohesion=700e3, mu=0.3, e_0=e_0, e_f=e_0)
     damping = 0.5 * np.sqrt(ice.k_f * ice.rho_i * ice.h)  # waves of the push die out within it
     e = CrackingEngine(grid, ice, hrennikoff(ice), SECONDS / LOOKS, law=law, held_in_plane=held, damping=float(damping),
-                       alpha=1e-4, sub_steps=SubSteps(scaling=4.0))  # fmt: skip
+                       alpha=1e-4, sub_steps=SLOW)  # fmt: skip
     live, on = np.ones((nodes - 1, nodes - 1), bool), np.ones(grid.nodes, bool)
     if crack != "intact":
         live[:, (nodes - 1) // 2] = False
