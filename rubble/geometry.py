@@ -46,6 +46,29 @@ def area_moments(polygon: Array) -> AreaMoments:
     return AreaMoments(area, x0 + cx, z0 + cz, polar - area * (cx * cx + cz * cz))
 
 
+class SecondMoments(NamedTuple):
+    """Second moments of area about the centroid [m^4]."""
+
+    xx: float
+    zz: float
+    xz: float
+
+
+@compiled(nogil=True)
+def second_moments(polygon: Array) -> SecondMoments:
+    """Second moments of a (k, 2) polygon, counter-clockwise."""
+    own, k = area_moments(polygon), polygon.shape[0]
+    xx = zz = xz = 0.0
+    for i in range(k):
+        j = i + 1 if i + 1 < k else 0
+        ax, az, bx, bz = polygon[i, 0] - own.x, polygon[i, 1] - own.z, polygon[j, 0] - own.x, polygon[j, 1] - own.z
+        cross = ax * bz - bx * az
+        xx += cross * (ax * ax + ax * bx + bx * bx) / 12
+        zz += cross * (az * az + az * bz + bz * bz) / 12
+        xz += cross * (ax * bz + 2 * ax * az + 2 * bx * bz + bx * az) / 24
+    return SecondMoments(xx, zz, xz)
+
+
 @compiled(f"{POLYGON}({POLYGON}, float64, float64, float64)", nogil=True)
 def clip(polygon: Array, nx: float, nz: float, c: float) -> Array:
     """The part of a convex (k, 2) polygon on which ``nx x + nz z <= c``; (m, 2), m = 0 if nothing is left."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubble.arrays import Array
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.domain import Domain
 from rubble.energy import mechanical_energy
 from rubble.geometry import place

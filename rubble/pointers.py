@@ -21,48 +21,34 @@ class ArbiterLayout(NamedTuple):
     points: int  #: how many contact points
     contacts: int
     n: int
-    u: int
+    data: int  #: a place that the library leaves to its user
     r1: int
     r2: int
-    jn: int
-    jt: int
+    hash: int
     size: int  #: of a contact point
 
 
 class BodyLayout(NamedTuple):
-    """Where a body keeps its state, the force on it, and what resists [bytes]."""
+    """Where a body keeps its place [bytes]."""
 
     x: int
     z: int
     angle: int
-    v_x: int
-    v_z: int
-    omega: int
-    force_x: int
-    force_z: int
-    moment: int
-    inverse_mass: int
-    inverse_inertia: int
 
 
 def arbiter_layout() -> ArbiterLayout:
     """Where arbiter and contact of the installed library keep their fields."""
     arbiter, contact = ffi.typeof("cpArbiter"), ffi.typeof("struct cpContact")
-    own = {n: int(ffi.offsetof(arbiter, n)) for n in ("body_a", "body_b", "contacts", "n", "u")}
-    point = {
-        ours: int(ffi.offsetof(contact, n))
-        for ours, n in (("r1", "r1"), ("r2", "r2"), ("jn", "jnAcc"), ("jt", "jtAcc"))
-    }
+    own = {n: int(ffi.offsetof(arbiter, n)) for n in ("body_a", "body_b", "contacts", "n", "data")}
+    point = {n: int(ffi.offsetof(contact, n)) for n in ("r1", "r2", "hash")}
     return ArbiterLayout(points=int(ffi.offsetof(arbiter, "count")), size=int(ffi.sizeof(contact)), **own, **point)
 
 
 def body_layout() -> BodyLayout:
-    """Where a body keeps its fields; cffi does not know the struct, so they are looked up in one with known values."""
-    known = BodyLayout(*(v / 64 for v in (32, -80, 24, 176, -224, 264, -336, 424, 504, 4, 1)))  # type: ignore[arg-type]
+    """Where a body keeps its place; cffi does not know the struct, so it is looked up in one with known values."""
+    known = BodyLayout(0.5, -1.25, 0.375)  # type: ignore[arg-type]
     body = pymunk.Body(16.0, 64.0)
-    body.position, body.angle, body.velocity = (known.x, known.z), known.angle, (known.v_x, known.v_z)
-    body.angular_velocity, body.torque = known.omega, known.moment
-    lib.cpBodySetForce(body._body, (known.force_x, known.force_z))
+    body.position, body.angle = (known.x, known.z), known.angle
     memory = np.frombuffer(ffi.buffer(ffi.cast("char *", body._body), 8 * 18), np.float64)
     found = [np.flatnonzero(memory == value) for value in known]
     if any(len(at) == 0 for at in found):
@@ -127,9 +113,23 @@ def _call_step(_typing: Any, _function: Any, _space: Any, _dt: Any) -> Any:
     return types.void(types.int64, types.int64, types.float64), codegen
 
 
+def _call_set_corners(_typing: Any, _function: Any, _shape: Any, _count: Any, _corners: Any) -> Any:
+    """function(shape, count, corners) at an address, as cpPolyShapeSetVertsRaw."""
+
+    def codegen(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        kind = ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t, ir.IntType(32), cgutils.voidptr_t])
+        target = builder.inttoptr(args[0], kind.as_pointer())
+        shape, corners = (builder.inttoptr(args[k], cgutils.voidptr_t) for k in (1, 3))
+        builder.call(target, [shape, builder.trunc(args[2], ir.IntType(32)), corners])
+        return _context.get_dummy_value()
+
+    return types.void(types.int64, types.int64, types.int64, types.int64), codegen
+
+
 number: Any = intrinsic(_number)
 pointer: Any = intrinsic(_as_pointer)
 step_space: Any = intrinsic(_call_step)
+set_corners: Any = intrinsic(_call_set_corners)
 #: value of an address
 real: Any = intrinsic(_reader(types.float64, ir.DoubleType()))
 integer: Any = intrinsic(_reader(types.int64, ir.IntType(64)))

@@ -8,7 +8,7 @@ from math import atan2
 import numpy as np
 
 from rubble.arrays import Array, Records, filled
-from rubble.geometry import area_moments, clip
+from rubble.geometry import area_moments, clip, second_moments
 from rubble.pressure import EDGE
 
 #: Cosine of the steepest edge that belongs to a block's top, 26 degrees: the sides of a piece stand at 90 degrees, what
@@ -18,12 +18,12 @@ TOP = 0.9
 
 @dataclass(frozen=True, slots=True)
 class Prism:
-    """What follows from a block's outline and its strips; body frame, about the centre of mass."""
+    """What follows from a block's outline and its strips; in the plate's axes, about its centre of mass."""
 
     polygon: Array  #: (k, 2) outline, counter-clockwise
     edges: Records  #: (e,) EDGE, see `pressure`
     mass: float  #: true mass [kg]
-    inertia: float  #: true moment of inertia about the y axis [kg m^2]
+    tensor: Array  #: (3, 3) true inertia about the centre of mass [kg m^2]
     width: float  #: mean extent along y [m]
     area: float  #: of the outline [m^2]
     reach: float  #: of the farthest corner from the centre [m]
@@ -38,7 +38,7 @@ def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[
     """The prism of an outline turned so that its axis lies along x, and where its centre of mass was."""
     cuts, widths = _checked_strips(own, cuts, widths)
     parts = strips(own, cuts, widths)
-    volume, cx, cz, polar = inertia(parts, widths)
+    volume, cx, cz, tensor = inertia(parts, widths)
     shift = np.array([cx, cz])
     parts, own, area = [p - shift for p in parts], own - shift, float(area_moments(own).area)
     edges = wetted_edges(parts, cuts - cx, widths)
@@ -47,7 +47,7 @@ def make_prism(own: Array, cuts: Array, widths: Array, density: float) -> tuple[
         polygon=own,
         edges=edges,
         mass=density * volume,
-        inertia=density * polar,
+        tensor=density * tensor,
         width=volume / area,
         area=area,
         reach=float(np.hypot(*own.T).max()),
@@ -69,14 +69,20 @@ def strips(polygon: Array, cuts: Array, widths: Array) -> list[Array]:
     return parts
 
 
-def inertia(parts: list[Array], widths: Array) -> tuple[float, float, float, float]:
-    """Volume [m^3], centre x and z [m], and second moment of volume about the centre [m^5] of strips with widths."""
-    area, at_x, at_z, own = np.array([area_moments(p) for p in parts]).T
+def inertia(parts: list[Array], widths: Array) -> tuple[float, float, float, Array]:
+    """Volume [m^3], centre x and z [m], and inertia about the centre (3, 3) [m^5] of strips with widths."""
+    area, at_x, at_z, _ = np.array([area_moments(p) for p in parts]).T
+    xx, zz, xz = np.array([second_moments(p) for p in parts]).T
     volume = area * widths
     total = float(volume.sum())
     x, z = float(volume @ at_x) / total, float(volume @ at_z) / total
-    polar = own * widths + volume * ((at_x - x) ** 2 + (at_z - z) ** 2)
-    return total, x, z, float(polar.sum())
+    sum_xx = float(xx @ widths + volume @ (at_x - x) ** 2)
+    sum_zz = float(zz @ widths + volume @ (at_z - z) ** 2)
+    sum_xz = float(xz @ widths + volume @ ((at_x - x) * (at_z - z)))
+    sum_yy = float(volume @ widths**2) / 12.0
+    tensor = np.diag([sum_yy + sum_zz, sum_xx + sum_zz, sum_xx + sum_yy])
+    tensor[0, 2] = tensor[2, 0] = -sum_xz
+    return total, x, z, tensor
 
 
 def wetted_edges(parts: list[Array], cuts: Array, widths: Array) -> Records:

@@ -1,46 +1,96 @@
-"""Test rigs on blocks: what verification needs and a run never uses."""
+"""Test rigs on plates: what verification needs and a run never uses."""
 
 from __future__ import annotations
 
-import pymunk
+from typing import TYPE_CHECKING, NamedTuple
 
-from rubble.layer import RubbleLayer
+import numpy as np
+
+from rubble.arrays import Array, IntArray
+from rubble.compiled import compiled
+from rubble.gather import Scene
+from rubble.plates import times
+from rubble.rows import HOLDS, JOINT, Rows, set_arms, set_way
+
+if TYPE_CHECKING:
+    from rubble.layer import RubbleLayer
+
+TAKEN_OUT = 0.1  #: share of the gap in a joint that is closed in a sub-step
+
+
+class Joints(NamedTuple):
+    """Moment-free connections of plates with points that move at given velocities."""
+
+    plate: IntArray  #: (j,)
+    place: Array  #: (j, 3) in the plate's axes [m]
+    anchor: Array  #: (j, 3) the other point, now [m]
+    velocity: Array  #: (j, 3) with which it moves [m/s]
+
+
+def no_joints() -> Joints:
+    """None."""
+    return Joints(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)))
+
+
+@compiled(nogil=True)
+def joint_rows(scene: Scene, joints: Joints, rows: Rows, old: Rows, found: int, before: int) -> int:
+    """Adds a row for each joint, held in three directions; returns the number of rows, -1 if there is no room.
+
+    ``old`` has ``before`` rows, of which the last are those of the joints.
+    """
+    plates, n = scene.plates, joints.plate.shape[0]
+    if found + n > rows.point.shape[0]:
+        return -1
+    for j in range(n):
+        c, i, b, o = found + j, joints.plate[j], joints.place[j], before - n + j
+        x, y, z = times(plates.rotation[i], b[0], b[1], b[2])
+        point = rows.point[c]
+        point.x, point.y, point.z = plates.position[i, 0] + x, plates.position[i, 1] + y, plates.position[i, 2] + z
+        point.a, point.b, point.edge, point.kind = plates.moved.shape[0] - 1, i, -1, JOINT
+        point.slot_a, point.slot_b, point.feature = -4, j, 0
+        point.mu, point.depth, point.most, point.shift_speed = HOLDS, 0.0, np.inf, 0.0
+        for d in range(3):
+            way = rows.way[c, d]
+            set_way(way, 1.0 if d == 0 else 0.0, 1.0 if d == 1 else 0.0, 1.0 if d == 2 else 0.0)
+            joints.anchor[j, d] += scene.dt * joints.velocity[j, d]
+            gap = joints.anchor[j, d] - (point.x if d == 0 else (point.y if d == 1 else point.z))
+            way.target = joints.velocity[j, d] + TAKEN_OUT * gap / scene.dt
+            way.impulse = old.way[o, d].impulse if o >= 0 and old.point[o].kind == JOINT else 0.0
+        set_arms(rows, c, plates, scene.edges)
+    return found + n
 
 
 class Hinge:
-    """A moment-free connection of a block with a point that moves at a given velocity."""
+    """A moment-free connection of a plate with a point that moves at a given velocity."""
 
     def __init__(
-        self,
-        layer: RubbleLayer,
-        section: int,
-        block: int,
-        x: float,
-        z: float,
-        velocity: tuple[float, float] = (0.0, 0.0),
+        self, layer: RubbleLayer, block: int, point: tuple[float, float, float], velocity: tuple[float, float, float]
     ) -> None:
-        """At (x, z) [m]; ``velocity`` [m/s]."""
-        own = layer.section(section)
-        self.body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-        self.body.position, self.body.velocity = (x, z), velocity
-        joint = pymunk.PivotJoint(self.body, layer.block(block).body, (x, z))
-        joint.collide_bodies = False
-        own.space.add(self.body, joint)
-        own.changed()
+        """At ``point`` [m]; ``velocity`` [m/s]."""
+        self._layer, self._number = layer, len(layer.joints.plate)
+        plate, old = layer.block(block), layer.joints
+        place = plate.rotation.T @ (np.array(point) - plate.position)
+        layer.joints = Joints(
+            np.append(old.plate, plate.row),
+            np.vstack([old.place, place]),
+            np.vstack([old.anchor, np.array(point, np.float64)]),
+            np.vstack([old.velocity, np.array(velocity, np.float64)]),
+        )
 
     @property
-    def position(self) -> tuple[float, float]:
-        """Where the hinge is now, x and z [m]."""
-        return float(self.body.position.x), float(self.body.position.y)
+    def position(self) -> Array:
+        """Where the hinge is now (3,) [m]."""
+        return self._layer.joints.anchor[self._number]
 
 
-def thrust(layer: RubbleLayer, block: int, fx: float, fz: float = 0.0, moment: float = 0.0) -> None:
-    """Press a block with a constant force [N] at its centre and a moment [N m]."""
-    layer.block(block).thrust = (fx, fz, moment)
-    for section in layer.sections.values():
-        section.changed()
+def thrust(layer: RubbleLayer, block: int, force: tuple[float, float, float], moment: float = 0.0) -> None:
+    """Press a plate with a constant force [N] at its centre and a moment from x towards z [N m]."""
+    layer.block(block).thrust = np.array([*force, 0.0, -moment, 0.0])
+    layer.store.lay_out()
 
 
 def lock_rotation(layer: RubbleLayer, block: int) -> None:
-    """Let a block move without turning."""
-    layer.block(block).body.moment = float("inf")
+    """Let a plate move without turning."""
+    plate = layer.block(block)
+    plate.rows.inertia[plate.row] = plate.rows.inverse[plate.row] = plate.rows.world[plate.row] = 0.0
+    plate.omega[:] = 0.0

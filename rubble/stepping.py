@@ -1,95 +1,101 @@
-"""The loop over the sub-steps of a window, compiled: forces, step, contacts, without Python in between.
-
-A Python loop costs as much as the solver for a section of thirty blocks, and two threads gain nothing because each of
-many short calls waits for the interpreter lock. Here one compiled call holds no lock for a whole window. It calls the
-same library function as `pymunk.Space.step`, by the address that cffi reports, and reads and writes the bodies where
-the library keeps them.
-"""
+"""The loop over the sub-steps of a window, compiled: move, find contacts, forces, solve, without Python in between."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from pymunk._chipmunk_cffi import ffi, lib
 
-from rubble.arrays import Records
-from rubble.bodies import VELOCITY, Bodies, read_bodies, set_force
+from rubble.arrays import Array, IntArray, Records
+from rubble.books import book_contacts, kick, outside, sum_contacts
 from rubble.compiled import compiled
-from rubble.contacts import Impulses, Meeting, accumulate
-from rubble.losses import book_correction, contact_work, kick, middle_velocity
-from rubble.pointers import address, step_space
-from rubble.sheet import spring_force
-from rubble.water import Hulls, Water, apply_water
+from rubble.gather import Scene, find_pairs, gather
+from rubble.plates import move_all
+from rubble.rig import Joints, joint_rows
+from rubble.rows import Rows, Surface, set_laws
+from rubble.sides import Sides, side_rows
+from rubble.solver import push_edge, solve
+from rubble.water import Hulls, Water, fill_tops, plate_forces
 
-STEP = address(ffi.addressof(lib, "cpSpaceStep"))
-TOO_MANY, STRANGE = -1, -2  #: a pair did not fit any more; one with a body that is no block, sheet or structure
-
-
-class Steps(NamedTuple):
-    """What is stepped, and how far at a time."""
-
-    dt: float  #: sub-step [s]
-    space: int  #: address of the space
-    function: int  #: address of cpSpaceStep
+#: what went wrong: a list of pairs was too short, a contact with an unknown body, too few rows
+TOO_MANY, STRANGE, NO_ROOM = -1, -2, -3
 
 
-class Work(NamedTuple):
-    """Energy of a section since its start, and impulses of the water over a window."""
+class Window(NamedTuple):
+    """A window of sub-steps."""
 
-    water: Records  #: (1,) WATER_WORK
-    impulse: Records  #: (1,) WATER_IMPULSE
-    step: Records  #: (1,) STEP_WORK
-    loss: Records  #: (3,) PAIR_LOSS
+    iterations: int
+    surface: Surface
+    water: Water
+    hulls: Hulls
+    thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
+    sides: Sides
+    joints: Joints
 
 
 class Sums(NamedTuple):
     """All that is summed over sub-steps."""
 
-    impulses: Impulses
-    work: Work
+    plate: Array  #: (n, 9) `store.ON_PLATE`
+    node: Records  #: NODE of all sections with a sheet
+    offset: IntArray  #: (e + 1,) section e owns node[offset[e]:offset[e + 1]]
+    books: Records  #: (1,) BOOKS
+    water: Records  #: (1,) WATER_IMPULSE
+    pressure: Array  #: (n, 6) of the last sub-step [N, N m]
+    momenta: Array  #: (3, 6) that plates receive, see `books`
+    count: IntArray  #: (2,) rows of the last sub-step; its number
 
 
 @compiled(nogil=True)
-def advance_substeps(
-    n: int,
-    steps: Steps,
-    bodies: Bodies,
-    hulls: Hulls,
-    water: Water,
-    driver: Records,
-    meeting: Meeting,
-    sums: Sums,
-) -> int:
-    """Do up to ``n`` sub-steps and return how many; fewer where a list must grow first.
+def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows, sums: Sums) -> int:
+    """Do ``n`` sub-steps; returns how many were done, fewer where a list must grow first.
 
-    The states of `Bodies` are valid after every sub-step. ``driver`` (1,) DRIVER moves the sheet if there is one.
-    A section goes on after a return, so that nothing is lost: the list of pairs grows when it is half full, that of
-    overloaded pairs when it could not take all pairs of another sub-step. Or returns TOO_MANY, STRANGE.
+    A sub-step that found no room has moved the plates, and is gone on with: its contacts are found once more.
     """
-    dt, state, sheet, pairs = steps.dt, bodies.state, bodies.blocks, meeting.pairs.list[0]
-    impulses, work = sums.impulses, sums.work
-    has_sheet = sheet < bodies.address.shape[0]
-    water_work, impulse, step_work = work.water[0], work.impulse[0], work.step[0]
-    old, kicked = np.empty_like(state), np.empty(state.shape[0], VELOCITY)
-    read_bodies(bodies)
+    plates, edges, dt, books = scene.plates, scene.edges, scene.dt, sums.books[0]
+    count = plates.moved.shape[0] - 1
+    forces, lowest = np.empty((count, 3, 6)), np.empty(count)
     for k in range(n):
-        apply_water(hulls, bodies, water, water_work, impulse)
-        if has_sheet:
-            fx, fz = spring_force(driver[0], dt, state[sheet])
-            set_force(bodies.address[sheet], bodies.layout, fx, fz, 0.0)
-        pairs.count = 0
-        old[:] = state
-        kick(bodies, dt, kicked, step_work)
-        step_space(steps.function, steps.space, dt)
-        read_bodies(bodies)
-        book_correction(old, bodies, dt, hulls, water.rho_g, step_work)
-        middle_velocity(state, kicked)
-        if pairs.count > pairs.room:
-            return TOO_MANY
-        if pairs.count > 0 and accumulate(meeting, bodies, impulses) > 0:
-            return STRANGE
-        contact_work(meeting.pairs, meeting.slots, kicked, sheet, work.loss, step_work)
-        if 2 * pairs.count > pairs.room or impulses.overloads[0].pairs + pairs.room > impulses.overload.shape[0]:
+        books.stepping += move_all(plates, dt)
+        for e in range(edges.place.shape[0]):
+            for d in range(2):
+                edges.place[e, d] += dt * (edges.motion[e, d] + edges.shift[e, d])
+        find_pairs(scene)
+        stamp = sums.count[1] + 1
+        rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
+        found = gather(scene, rows, old, stamp)
+        if found < 0:
+            return found
+        contacts = side_rows(scene, window.sides, rows, old, found, sums.count[0])
+        found = joint_rows(scene, window.joints, rows, old, contacts, sums.count[0]) if contacts >= 0 else -1
+        if found < 0:
+            return NO_ROOM
+        sums.count[0], sums.count[1] = found, stamp
+        set_laws(rows, contacts, plates, edges, window.surface, dt)
+        plate_forces(plates, window.hulls, window.water, forces, lowest)
+        _sum_water(forces, dt, sums.water)
+        outside(plates, window.hulls, forces, dt, sums.momenta)
+        kick(plates, window.hulls, window.thrust, forces, sums.pressure, dt, books)
+        fill_tops(plates, window.water, lowest, dt)
+        for e in range(edges.place.shape[0]):
+            push_edge(edges.yields, edges.motion, e, -dt * edges.carried[e, 0], -dt * edges.carried[e, 1])
+        kicked, kicked_edge = plates.motion.copy(), edges.motion.copy()
+        solve(rows, found, plates, edges, window.iterations)
+        book_contacts(rows, found, kicked, kicked_edge, plates, edges, books)
+        sum_contacts(rows, found, sums.plate, sums.node, sums.offset, sums.momenta)
+        if found > 0 and 2 * found > rows.point.shape[0]:
             return k + 1
     return n
+
+
+@compiled(nogil=True)
+def _sum_water(forces: Array, dt: float, sums: Records) -> None:
+    """Adds the impulses of the water on all plates, x and z."""
+    out = sums[0]
+    for i in range(forces.shape[0]):
+        out.flooded_x += dt * forces[i, 0, 0]
+        out.flooded_z += dt * forces[i, 0, 2]
+        out.dry_x += dt * forces[i, 1, 0]
+        out.dry_z += dt * forces[i, 1, 2]
+        out.drag_x += dt * forces[i, 2, 0]
+        out.drag_z += dt * forces[i, 2, 2]

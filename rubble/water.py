@@ -1,16 +1,15 @@
-"""Forces of still water on blocks: buoyancy, form drag, skin drag; one kernel for all blocks of a section.
+"""Forces of water on plates: buoyancy, dry tops, form drag, skin drag; one kernel for all pieces.
 
-* Buoyancy is the pressure on the edges of the block, see `pressure`.
+* Buoyancy: the water all around lifts a piece by the weight of what it displaces, at the centre of that volume: the
+  gradient of its potential energy, whatever way the plate is turned. Across its width a piece counts as it is in its
+  middle plane.
+* Dry tops: the top of a new plate carries a part of its head of water, 0 when dry, 1 when flooded. The part grows
+  from the moment when water comes over the lowest edge of the top; a top that is out of the water drains.
 * Form drag: where the body moves into the water (u.n > 0), ``-rho_w/2 C_d (u.n) u`` per area. For a translation this is
   C_d on the projected submerged extent; for a rotation it gives the moment with the same coefficient (three Gauss
-  points per edge: 3 % too much for an edge that turns about its middle).
+  points per edge: 3 % too much for an edge that turns about its middle). The sides of a plate drag likewise.
 * Skin drag: ``-rho_w/2 C_f |u_t| u_t`` per wetted area, u_t along the edge.
-* Added mass stands in mass and moment of inertia of the body, see `block`.
-* Backfill: the top of a new block carries a part of its head of water, 0 when dry, 1 when flooded. The part grows
-  from the moment when water comes over the lowest edge of the top; a top that is out of the water drains.
-
-The pose is taken one sub-step ahead, because pymunk moves bodies before it applies forces: with the force at the old
-pose bobbing would gain energy by (omega dt)^2 per step.
+* Added mass stands in mass and inertia of the plate, see `piece`.
 """
 
 from __future__ import annotations
@@ -20,14 +19,13 @@ from typing import NamedTuple
 import numpy as np
 
 from rubble.arrays import Array, IntArray, Record, Records, record
-from rubble.bodies import Bodies, set_force
 from rubble.compiled import compiled
 from rubble.physics import RubblePhysics
-from rubble.pressure import Ends, pressure_on, turned, wetted
+from rubble.plates import Plates, times, turn_back
+from rubble.pressure import Wet, on_waterline, wet_part
 
-#: what water has done to the blocks since the start: loss by drag [J], impulse x, z [N s], work of dry tops [J], work
-#: that the pressure all around does beyond its potential energy because it is taken at the end of a sub-step [J]
-WATER_WORK = record("drag_loss", "impulse_x", "impulse_z", "dry_work", "stepping")
+#: what water has done to the plates since the start [J]: loss by drag, work of dry tops
+WATER_WORK = record("drag_loss", "dry_work")
 #: impulses of the water over a window, x and z of each [N s]: pressure as if all tops were flooded, what dry tops add
 #: to it, drag
 WATER_IMPULSE = record("flooded_x", "flooded_z", "dry_x", "dry_z", "drag_x", "drag_z")
@@ -42,75 +40,41 @@ class Water(NamedTuple):
     half_rho: float  #: rho_w / 2 [kg/m^3]
     form_drag: float  #: C_d
     skin_drag: float  #: C_f
-    ahead: float  #: time by which the pose is advanced: the sub-step [s]
     level: float  #: height of the water on the tops, <= 0 [m]
     filling_rate: float  #: part of the head on a wet top that comes per second [1/s]
-    current: float = 0.0  #: velocity of the water along x [m/s]
+    current_x: float  #: velocity of the water along x and y [m/s]
+    current_y: float
 
 
 class Hulls(NamedTuple):
-    """The blocks of a section as the water meets them."""
+    """The pieces as the water meets them."""
 
-    edges: Records  #: EDGE of all blocks
-    offset: IntArray  #: (n + 1,) block i owns edges[offset[i]:offset[i + 1]]
-    weight: Records  #: (n,) FORCE: weight and any constant thrust
-    flooded: Array  #: (n,) part of the head that the top carries
-    pressure: Records  #: (n,) FORCE: pressure all around in the last sub-step, nan if unknown
+    plate: IntArray  #: (p,) row of the plate
+    y: Array  #: (p,) of the middle, in the plate's axes [m]
+    side: Array  #: (p,) part of its two sides that no other piece covers, 0-1, over its mean width [1/m]
+    edges: Records  #: `pressure.EDGE` of all pieces
+    offset: IntArray  #: (p + 1,) piece i owns edges[offset[i]:offset[i + 1]]
+    weight: Array  #: (n, 3) constant force on each plate: weight and thrust [N]
+    moment: Array  #: (n, 3) constant moment [N m]
 
 
 class Pose(NamedTuple):
-    """How a block stands and moves while the water presses on it."""
+    """How a piece stands and moves while the water presses on it."""
 
-    z: float  #: of its centre [m]
-    c: float  #: cosine and sine of its angle
+    z: float  #: of the origin of its plate's x-z plane at its y [m]
+    c: float  #: rise of the plate's z axis, and of its x axis
     s: float
-    v_x: float  #: velocity in the section [m/s]
-    v_z: float
-    u_x: float  #: the same in the body frame [m/s]
+    u_x: float  #: velocity through the water there, along the plate's axes [m/s]
     u_z: float
-    omega: float  #: [rad/s]
+    omega: float  #: rate of turning from x towards z [rad/s]
 
 
-class EdgeForce(NamedTuple):
-    """Pressure and drag on one edge in the body frame."""
+class Plane(NamedTuple):
+    """A force in the plate's x-z plane, with its moment from x towards z about the centre of mass [N, N, N m]."""
 
-    x: float  #: both together [N]
+    x: float
     z: float
-    moment: float  #: about the centre of mass [N m]
-    power: float  #: of drag [W]
-    pressure: float  #: along the outward normal [N]
-    braked: float  #: drag along the outward normal [N]
-    along: float  #: drag along the edge [N]
-    twist: float  #: moment of the pressure [N m]
-
-
-class TopForce(NamedTuple):
-    """What the head on an edge of the top does, in the section."""
-
-    flooded_x: float  #: pressure if it were flooded [N]
-    flooded_z: float
-    flooded_moment: float  #: [N m]
-    dry_x: float  #: what it gains because it carries less [N]
-    dry_z: float
-    power: float  #: of that [W]
-
-
-class WaterForce(NamedTuple):
-    """Water force on a block, moments about the centre of mass."""
-
-    x: float  #: pressure and drag together [N]
-    z: float
-    moment: float  #: [N m]
-    drag_power: float  #: [W]
-    dry_power: float  #: of the head that the top lacks [W]
-    lowest: float  #: height of the lowest point of its top [m]
-    flooded_x: float  #: pressure as if the top were flooded [N]
-    flooded_z: float
-    flooded_moment: float  #: [N m]
-    dry_x: float  #: what a dry top adds to it [N]
-    dry_z: float
-    drag_x: float  #: [N]
-    drag_z: float
+    moment: float
 
 
 def water_of(physics: RubblePhysics) -> Water:
@@ -120,131 +84,137 @@ def water_of(physics: RubblePhysics) -> Water:
         half_rho=physics.rho_w / 2,
         form_drag=float(physics.form_drag),
         skin_drag=float(physics.skin_drag),
-        ahead=float(physics.substep),
         level=float(physics.backfill_level),
         filling_rate=float(physics.filling_rate),
-        current=float(physics.current[0]),
+        current_x=float(physics.current[0]),
+        current_y=float(physics.current[1]),
     )
-
-
-@compiled(nogil=True)
-def _on_top(edge: Record, pose: Pose, flooded: float, water: Water) -> TopForce:
-    """An edge of the top that carries only a part of its head."""
-    ends = turned(edge, pose.c, pose.s)
-    full = pressure_on(ends, edge.width, pose.z, water.rho_g)
-    now = pressure_on(ends, edge.width * flooded, pose.z - water.level, water.rho_g)
-    power = (now.x - full.x) * pose.v_x + (now.z - full.z) * pose.v_z + (now.moment - full.moment) * pose.omega
-    return TopForce(full.x, full.z, full.moment, now.x - full.x, now.z - full.z, power)
 
 
 @compiled(nogil=True, error_model="numpy", inline="always")
-def _on_edge(edge: Record, pose: Pose, width: float, z: float, water: Water) -> EdgeForce:
-    """Pressure and drag on one edge; the water stands at height 0 when the centre stands at z.
+def _drag(edge: Record, wet: Wet, pose: Pose, width: float, water: Water) -> Plane:
+    """Drag on the wet part of an edge.
 
     Along an edge of a rigid body u.t is constant and u.n linear, so the integrals are moments of u.n.
     """
-    c, s, tx, tz, om = pose.c, pose.s, edge.t_x, edge.t_z, pose.omega
-    ax, az, bx, bz = edge.x0, edge.z0, edge.x1, edge.z1
-    da, db = z + s * ax + c * az, z + s * bx + c * bz
-    if da >= 0.0 and db >= 0.0:
-        return EdgeForce(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    if da > 0.0 or db > 0.0:
-        ax, az, bx, bz = wetted(Ends(ax, az, bx, bz), da, db)
-    lx, lz = bx - ax, bz - az
-    length, mx, mz = lx * tx + lz * tz, (ax + bx) / 2, (az + bz) / 2
+    tx, tz, om = edge.t_x, edge.t_z, pose.omega
+    length, mx, mz = wet.length, wet.x, wet.z
     area, arm = width * length, mx * tx + mz * tz
-    mean, tilt = -water.rho_g * (z + s * mx + c * mz), -water.rho_g * (s * lx + c * lz) / 12
     ux, uz = pose.u_x - om * mz, pose.u_z + om * mx
     ut, un = ux * tx + uz * tz, ux * tz - uz * tx
-    normal, tangent = -area * mean, -area * water.half_rho * water.skin_drag * abs(ut) * ut
-    couple = area * length * tilt
-    power, half, pressure, braked = tangent * ut, om * length, normal, 0.0
-    twist = couple - normal * arm
+    normal, tangent = 0.0, -area * water.half_rho * water.skin_drag * abs(ut) * ut
+    couple, half = 0.0, om * length
     if un > -0.5 * abs(half):  # some of the edge may move into the water
         u0, u1, u2 = max(un + GAUSS_X * half, 0.0), max(un, 0.0), max(un - GAUSS_X * half, 0.0)
         w0, w1, w2 = OUTER * u0, MIDDLE * u1, OUTER * u2  # Gauss-Legendre, exact to fifth order
-        first, second, third = w0 + w1 + w2, w0 * u0 + w1 * u1 + w2 * u2, w0 * u0 * u0 + w1 * u1 * u1 + w2 * u2 * u2
-        turn = GAUSS_X * (w2 * u2 - w0 * u0)
+        first, second = w0 + w1 + w2, w0 * u0 + w1 * u1 + w2 * u2
         k = area * water.half_rho * water.form_drag
-        braked = -k * second
-        normal += braked
+        normal -= k * second
         tangent -= k * first * ut
-        couple += k * length * turn
-        power -= k * (first * ut * ut + third)
+        couple += k * length * GAUSS_X * (w2 * u2 - w0 * u0)
     moment = couple - normal * arm + tangent * (mx * tz - mz * tx)
-    return EdgeForce(
-        normal * tz + tangent * tx, -normal * tx + tangent * tz, moment, power, pressure, braked, tangent, twist
-    )
+    return Plane(normal * tz + tangent * tx, -normal * tx + tangent * tz, moment)
+
+
+@compiled(nogil=True, inline="always")
+def _head(edge: Record, wet: Wet, push: float) -> Plane:
+    """Pressure on the wet part of an edge, ``push`` = rho_w g times width for that of the water all around."""
+    normal = -push * wet.length * wet.depth
+    moment = push * wet.length * wet.length * wet.tilt - normal * (wet.x * edge.t_x + wet.z * edge.t_z)
+    return Plane(normal * edge.t_z, -normal * edge.t_x, moment)
 
 
 @compiled(nogil=True)
-def block_force(edges: Records, start: int, end: int, water: Water, flooded: float, row: Record) -> WaterForce:
-    """Water force on the block with the `STATE` row and the edges from ``start`` to ``end``.
+def _add(out: Array, r: Array, y: float, f: Plane) -> None:
+    """Add a force in the plane y of a plate to ``out`` (6,), fixed axes."""
+    x, y_, z = times(r, f.x, 0.0, f.z)
+    a, b, c = times(r, y * f.z, -f.moment, -y * f.x)
+    out[0], out[1], out[2] = out[0] + x, out[1] + y_, out[2] + z
+    out[3], out[4], out[5] = out[3] + a, out[4] + b, out[5] + c
 
-    The top carries the part ``flooded`` of the head below the level of `Water`, every other edge the head below z = 0.
-    """
-    om = row.omega
-    z, angle = row.z + water.ahead * row.v_z, row.angle + water.ahead * om
-    c, s = np.cos(angle), np.sin(angle)
-    v_x = row.v_x - water.current  # drag is that of the motion through the water
-    pose = Pose(z, c, s, row.v_x, row.v_z, c * v_x + s * row.v_z, c * row.v_z - s * v_x, om)
-    fx, fz, moment, power, lack, lowest = 0.0, 0.0, 0.0, 0.0, 0.0, np.inf
-    wet_x = wet_z = drag_x = drag_z = turn = full_x = full_z = dry_x = dry_z = 0.0
-    for e in range(start, end):
-        edge = edges[e]
-        width, level, dry, tx, tz = edge.width, z, False, edge.t_x, edge.t_z
+
+@compiled(nogil=True)
+def _add_at(out: Array, r: Array, at: tuple[float, float, float], x: float, y: float, z: float) -> None:
+    """Add a force (x, y, z) at a point, both in the plate's axes, to ``out`` (6,), fixed axes."""
+    a, b, c = times(r, at[1] * z - at[2] * y, at[2] * x - at[0] * z, at[0] * y - at[1] * x)
+    x, y, z = times(r, x, y, z)
+    out[0], out[1], out[2] = out[0] + x, out[1] + y, out[2] + z
+    out[3], out[4], out[5] = out[3] + a, out[4] + b, out[5] + c
+
+
+@compiled(nogil=True)
+def _piece_force(i: int, plates: Plates, hulls: Hulls, water: Water, out: Array) -> float:
+    """Adds the water's force on piece i to ``out``, see `plate_forces`; returns the height of its top's lowest point."""
+    k, y = hulls.plate[i], hulls.y[i]
+    r, v, share = plates.rotation[k], plates.motion[k], plates.flooded[k]
+    ux, uy, uz = turn_back(r, v.x - water.current_x, v.y - water.current_y, v.z)
+    wx, wy, wz = turn_back(r, v.a, v.b, v.c)
+    s, c = r[2, 0], r[2, 2]
+    pose = Pose(plates.position[k, 2] + r[2, 1] * y, c, s, ux - wz * y, uz + wx * y, -wy)
+    volume = at_x = at_z = fx = fz = turn = dry_x = dry_z = dry_turn = 0.0
+    lowest = np.inf
+    ox, oz = on_waterline(pose.z, s, c)
+    for e in range(hulls.offset[i], hulls.offset[i + 1]):
+        edge = hulls.edges[e]
+        wet, width = wet_part(edge, pose.z, s, c), edge.width
+        cross = 0.5 * width * ((wet.ax - ox) * (wet.bz - oz) - (wet.bx - ox) * (wet.az - oz))
+        volume += cross
+        at_x, at_z = at_x + cross * (wet.ax + wet.bx + ox) / 3.0, at_z + cross * (wet.az + wet.bz + oz) / 3.0
         if edge.top > 0.0:
-            lowest = min(lowest, z + s * edge.x0 + c * edge.z0, z + s * edge.x1 + c * edge.z1)
-            if water.level < 0.0 or flooded < 1.0:
-                top = _on_top(edge, pose, flooded, water)
-                lack, turn = lack + top.power, turn + top.flooded_moment
-                full_x, full_z = full_x + top.flooded_x, full_z + top.flooded_z
-                dry_x, dry_z = dry_x + top.dry_x, dry_z + top.dry_z
-                width, level, dry = width * flooded, z - water.level, True
-        f = _on_edge(edge, pose, width, level, water)
-        fx, fz, moment, power = fx + f.x, fz + f.z, moment + f.moment, power + f.power
-        drag_x, drag_z = drag_x + f.braked * tz + f.along * tx, drag_z - f.braked * tx + f.along * tz
-        if not dry:
-            wet_x, wet_z, turn = wet_x + f.pressure * tz, wet_z - f.pressure * tx, turn + f.twist
-    full_x, full_z = full_x + c * wet_x - s * wet_z, full_z + s * wet_x + c * wet_z
-    drag_x, drag_z = c * drag_x - s * drag_z, s * drag_x + c * drag_z
-    fx, fz = c * fx - s * fz, s * fx + c * fz
-    power += drag_x * water.current
-    return WaterForce(
-        x=fx, z=fz, moment=moment, drag_power=power, dry_power=lack, lowest=lowest,
-        flooded_x=full_x, flooded_z=full_z, flooded_moment=turn, dry_x=dry_x, dry_z=dry_z, drag_x=drag_x, drag_z=drag_z,
-    )  # fmt: skip
+            lowest = min(lowest, pose.z + s * edge.x0 + c * edge.z0, pose.z + s * edge.x1 + c * edge.z1)
+            if share < 1.0 or water.level < 0.0:
+                full = _head(edge, wet, width * water.rho_g)
+                wet, width = wet_part(edge, pose.z - water.level, s, c), width * share
+                now = _head(edge, wet, width * water.rho_g)
+                dry_x, dry_z = dry_x + now.x - full.x, dry_z + now.z - full.z
+                dry_turn += now.moment - full.moment
+        if wet.length > 0.0:
+            drag = _drag(edge, wet, pose, width, water)
+            fx, fz, turn = fx + drag.x, fz + drag.z, turn + drag.moment
+    if volume > 0.0:
+        lift, at = water.rho_g * volume, (at_x / volume, y, at_z / volume)
+        _add_at(out[0], r, at, s * lift, r[2, 1] * lift, c * lift)
+        u = uy + wz * at[0] - wx * at[2]
+        _add_at(out[2], r, at, 0.0, -water.half_rho * water.form_drag * hulls.side[i] * volume * abs(u) * u, 0.0)
+    _add(out[1], r, y, Plane(dry_x, dry_z, dry_turn))
+    _add(out[2], r, y, Plane(fx, fz, turn))
+    return lowest
 
 
 @compiled(nogil=True)
-def apply_water(hulls: Hulls, bodies: Bodies, water: Water, work: Record, impulse: Record) -> None:
-    """Weight, thrust, buoyancy and drag of all blocks of a section, written into their pymunk bodies.
+def plate_forces(plates: Plates, hulls: Hulls, water: Water, forces: Array, lowest: Array) -> None:
+    """Forces and moments of the water on all plates, fixed axes [N, N m], and the lowest point of each top (n,) [m].
 
-    The part of the head on each top grows here. ``work`` (WATER_WORK) and ``impulse`` (WATER_IMPULSE) are added to.
+    ``forces`` (n, 3, 6): pressure as if the top were flooded, what a dry top adds, drag.
     """
-    edges, offset, state, address, dt = hulls.edges, hulls.offset, bodies.state, bodies.address, water.ahead
-    flooded, weight, pressure = hulls.flooded, hulls.weight, hulls.pressure
-    for i in range(bodies.blocks):
-        row, own, before = state[i], weight[i], pressure[i]
-        f = block_force(edges, offset[i], offset[i + 1], water, flooded[i], row)
-        fx, fz = f.x + own.x, f.z + own.z
-        set_force(address[i], bodies.layout, fx, fz, f.moment + own.moment)
-        work.drag_loss -= f.drag_power * dt
-        work.impulse_x += fx * dt
-        work.impulse_z += fz * dt
-        work.dry_work += f.dry_power * dt
-        impulse.flooded_x += f.flooded_x * dt
-        impulse.flooded_z += f.flooded_z * dt
-        impulse.dry_x += f.dry_x * dt
-        impulse.dry_z += f.dry_z * dt
-        impulse.drag_x += f.drag_x * dt
-        impulse.drag_z += f.drag_z * dt
-        late = 0.5 * (f.flooded_x - before.x) * row.v_x * dt
-        late += 0.5 * (f.flooded_z - before.z) * row.v_z * dt
-        late += 0.5 * (f.flooded_moment - before.moment) * row.omega * dt
-        before.x, before.z, before.moment = f.flooded_x, f.flooded_z, f.flooded_moment
-        work.stepping += late if late == late else 0.0  # nan: the pressure before is not known
-        if f.lowest < 0.0:
-            flooded[i] = min(1.0, flooded[i] + dt * water.filling_rate)
+    forces[:] = 0.0
+    lowest[:] = np.inf
+    for i in range(hulls.plate.shape[0]):
+        k = hulls.plate[i]
+        lowest[k] = min(lowest[k], _piece_force(i, plates, hulls, water, forces[k]))
+
+
+@compiled(nogil=True)
+def fill_tops(plates: Plates, water: Water, lowest: Array, dt: float) -> None:
+    """The part of the head on each top grows where water has come over its edge, and goes where it is dry."""
+    for k in range(plates.moved.shape[0] - 1):
+        if lowest[k] < 0.0:
+            plates.flooded[k] = min(1.0, plates.flooded[k] + dt * water.filling_rate)
         elif water.filling_rate > 0.0:
-            flooded[i] = 0.0
+            plates.flooded[k] = 0.0
+
+
+@compiled(nogil=True)
+def potential(plates: Plates, hulls: Hulls, mass: Array, rho_g: float, g: float, afloat: float, out: Array) -> None:
+    """Energy of weight and of water all around of each plate (n,) [J], from ice that floats flat (`RubblePhysics`)."""
+    for k in range(plates.moved.shape[0] - 1):
+        out[k] = mass[k] * (g * plates.position[k, 2] - afloat)
+    for i in range(hulls.plate.shape[0]):
+        k = hulls.plate[i]
+        r = plates.rotation[k]
+        z, s, c = plates.position[k, 2] + r[2, 1] * hulls.y[i], r[2, 0], r[2, 2]
+        ox, oz = on_waterline(z, s, c)
+        for e in range(hulls.offset[i], hulls.offset[i + 1]):
+            wet = wet_part(hulls.edges[e], z, s, c)
+            cross = 0.5 * hulls.edges[e].width * ((wet.ax - ox) * (wet.bz - oz) - (wet.bx - ox) * (wet.az - oz))
+            out[k] -= rho_g * cross * (z + (s * (wet.ax + wet.bx + ox) + c * (wet.az + wet.bz + oz)) / 3.0)

@@ -62,7 +62,7 @@ def test_with_numbas_own_cache_it_is_not(tmp_path):
 #: a block that falls through the air for ten sub-steps; what the kick of its weight adds beside the work along its way
 FALL = """
 import numpy as np
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.energy import energy_terms
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics

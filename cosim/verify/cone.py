@@ -17,7 +17,7 @@ from cosim.verify.case import CaseResult, near
 from coupling.rubble_port import OUTLINE_TOLERANCE
 from coupling.structure import Revolved, cone
 from rubble.arrays import Array
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import revolved
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts

@@ -9,7 +9,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, near
 from rubble.arrays import Array
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 

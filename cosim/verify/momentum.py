@@ -8,7 +8,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near
 from rubble.arrays import Array, rows
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.geometry import place
 from rubble.layer import RubbleLayer

@@ -8,7 +8,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near, value
 from rubble.arrays import Array
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.energy import mechanical_energy
 from rubble.geometry import place

@@ -8,7 +8,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, near, value
 from rubble.arrays import Array
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
@@ -41,7 +41,7 @@ def pushed(p: dict[str, Any], count: int, seconds: float) -> Array:
         x = -a * i
         outline = np.array([(x - a, low), (x, low), (x, low + p["h"]), (x - a, low + p["h"])])
         layer.add_block(0, Slab(outline, np.array([x - a, x]), np.array([p["width"]]), p["rho_i"]))
-    thrust(layer, count - 1, p["force"])
+    thrust(layer, count - 1, (p["force"], 0.0, 0.0))
     force = []
     for _ in range(round(seconds / p["window"])):
         layer.advance(round(p["window"] / physics.substep))

@@ -9,7 +9,7 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, at_most, near
 from coupling.structure import plane_slope
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane as plane_cut
 from rubble.geometry import place
 from rubble.layer import RubbleLayer

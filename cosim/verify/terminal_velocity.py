@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, near
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 

@@ -17,7 +17,7 @@ import numpy as np
 from cosim.verify.case import CaseResult, Figure, Quantity, near, value
 from coupling.structure import plane_slope
 from rubble.arrays import Array
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
@@ -103,7 +103,7 @@ def _rig(p: dict[str, Any], length: float, backfill: str) -> tuple[RubbleLayer, 
     z = -draft
     outline = np.array([(x[0], z), (tip, z), (tip, z + thick), (x[0], z + thick)])
     block = layer.add_block(0, Slab(outline, x, widths, p["rho_i"] * p["h"] / thick), (p["speed"], 0.0))
-    return layer, block, Hinge(layer, 0, block, x[0], z, (p["speed"], 0.0))
+    return layer, block, Hinge(layer, block, (x[0], 0.0, z), (p["speed"], 0.0, 0.0))
 
 
 def at_angles(p: dict[str, Any], phi: Array, force: Array) -> tuple[list[float], list[float]]:

@@ -17,12 +17,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pymunk
 
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
-from rubble.space import new_space
 
 SECTIONS, BLOCKS, WIDTH, SIZE = 15, 500, 5.6, (4.0, 2.0)
 PHYSICS = RubblePhysics(
@@ -66,6 +65,14 @@ def our_layer(threads: int) -> RubbleLayer:
     return layer
 
 
+def plain_space() -> pymunk.Space:
+    """A space with the solver's settings of the layer."""
+    space = pymunk.Space()
+    space.collision_persistence, space.collision_slop = 1, PHYSICS.slop
+    space.iterations = PHYSICS.iterations
+    return space
+
+
 class Plain:
     """The same pile in pymunk alone: net buoyancy as gravity, water as damping, no loads, no water forces."""
 
@@ -75,7 +82,7 @@ class Plain:
 
     @staticmethod
     def _space(key: int) -> pymunk.Space:
-        space = new_space(PHYSICS)
+        space = plain_space()
         space.gravity, space.damping = (0.0, 9.81 * (1006.0 / 846.0 - 1.0)), 0.6
         for solid in BIN:
             space.add(pymunk.Poly(space.static_body, solid.tolist()))
@@ -128,7 +135,7 @@ def measure(settle: float, seconds: float, repeat: int) -> dict[str, float]:
     for _ in range(repeat):
         for name, what in made.items():
             best[name] = max(best[name], factor(what, seconds))
-    contacts = sum(s._reader.count for s in made["layer_1"].sections.values())
+    contacts = int(made["layer_1"].runner.contacts)
     pairs = (
         sum(len(s._get_arbiters()) for s in made["plain_1"].spaces),
         sum(len(s.space._get_arbiters()) for s in made["layer_1"].sections.values()),

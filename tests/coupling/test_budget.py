@@ -18,7 +18,7 @@ from lattice.implicit.engine import Engine
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts

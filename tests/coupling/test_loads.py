@@ -9,7 +9,7 @@ from cosim.scenario.loading import load_scenario
 from coupling.budget import TERMS
 from coupling.current import Current
 from coupling.interface import SheetMotion, SimulationError
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.energy import energy_terms
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics

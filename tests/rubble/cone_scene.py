@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import revolved
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import revolved
 from rubble.domain import Domain
 from rubble.layer import RubbleLayer

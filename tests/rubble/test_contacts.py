@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubble.arrays import rows
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.crushing import depth_for
 from rubble.cut import plane
 from rubble.geometry import place

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubble.arrays import filled
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import FACE, Bearing, faceted, plane, revolved
 from rubble.friction import tilt
 from rubble.layer import RubbleLayer

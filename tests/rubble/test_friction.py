@@ -6,7 +6,7 @@ import pytest
 from pymunk import batch
 
 from rubble.arrays import filled, rows
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.cut import FACE, RADIAL, plane
 from rubble.friction import law_of, rate_dependent, split, tilt
 from rubble.geometry import place

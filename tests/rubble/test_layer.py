@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.domain import Domain
 from rubble.geometry import area_moments, place
 from rubble.layer import RubbleLayer

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rubble.block import Slab, energy_of
+from rubble.piece import Slab, energy_of
 from rubble.cut import plane
 from rubble.energy import energy_terms, mechanical_energy
 from rubble.geometry import place

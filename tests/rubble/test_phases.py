@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubble.arrays import filled
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.bodies import STATE
 from rubble.contacts import ON_BLOCK
 from rubble.cut import FACE, plane

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rubble.block import Slab, make_block
+from rubble.piece import Slab, make_block
 from rubble.geometry import contiguous
 from rubble.physics import RubblePhysics
 from rubble.prism import wetted_edges

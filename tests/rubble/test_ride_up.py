@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone, plane_slope
-from rubble.block import Slab
+from rubble.piece import Slab
 from rubble.crushing import crush
 from rubble.cut import plane, revolved
 from rubble.domain import Domain

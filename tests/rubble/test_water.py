@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rubble.arrays import filled
-from rubble.block import Slab, make_block
+from rubble.piece import Slab, make_block
 from rubble.bodies import STATE
 from rubble.energy import mechanical_energy
 from rubble.geometry import area_moments, clip, contiguous, place, submerged

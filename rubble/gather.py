@@ -1,0 +1,201 @@
+"""From the pairs that pymunk has found to rows of the solver, in the order of sections and pairs."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import carray  # type: ignore[attr-defined]  # numba exports it without saying so
+
+from rubble.arbiters import LIST
+from rubble.arrays import Array, IntArray, Record, Records
+from rubble.compiled import compiled
+from rubble.cut import nearest
+from rubble.plates import Plates, times
+from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
+from rubble.rows import ICE, SHEET, STRUCTURE, Edges, Rows, set_arms, set_way
+from rubble.slices import Slices
+from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
+
+SAME_FACE = 1.0 - 1e-6  #: cosine from which a contact's normal is that of a face
+STEEPEST = 1e3  #: |n_y / n_x| of the structure beyond which its face counts as parallel to the section
+
+
+class Sections(NamedTuple):
+    """The sections for the kernels."""
+
+    y: Array  #: (k,) their planes [m]
+    space: IntArray  #: (k,) addresses of the spaces
+    pairs: IntArray  #: (k,) addresses of their lists of pairs, `arbiters.LIST`
+    faces: Records  #: `cut.Cut.bearings` of all sections
+    offset: IntArray  #: (k + 1,) section i owns faces[offset[i]:offset[i + 1]]
+    step: int  #: address of cpSpaceStep
+    arbiter: ArbiterLayout
+    body: BodyLayout
+
+
+class Scene(NamedTuple):
+    """What contacts are made of."""
+
+    plates: Plates
+    slices: Slices
+    sections: Sections
+    slots: Slots
+    edges: Edges
+    dt: float  #: sub-step [s]
+    pitch: float  #: width of a section [m]
+    widths: Array  #: (s,) of the slices along y [m]
+    strength: float  #: greatest pressure of a contact times the sub-step [Pa s]
+    shortest: float  #: least length of a contact [m]
+
+
+@compiled(nogil=True)
+def find_pairs(scene: Scene) -> None:
+    """Put the bodies where plates and edges are, and let pymunk find contacts, section by section."""
+    plates, slices, sections, edges = scene.plates, scene.slices, scene.sections, scene.edges
+    layout = sections.body
+    for s in range(slices.body.shape[0]):
+        k = slices.plate[s]
+        r, b, p, body = plates.rotation[k], slices.anchor[s], plates.position[k], slices.body[s]
+        x, _, z = times(r, b[0], b[1], b[2])
+        set_real(body + layout.x, p[0] + x)
+        set_real(body + layout.z, p[2] + z)
+        set_real(body + layout.angle, np.arctan2(r[2, 0], r[0, 0]))
+    for e in range(edges.body.shape[0]):
+        if edges.body[e] != 0:
+            set_real(edges.body[e] + layout.x, edges.place[e, 0])
+            set_real(edges.body[e] + layout.z, edges.place[e, 1])
+    for i in range(sections.space.shape[0]):
+        carray(pointer(sections.pairs[i]), 1, LIST)[0].count = 0
+        step_space(sections.step, sections.space[i], scene.dt)
+
+
+@compiled(nogil=True)
+def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
+    """Rows of all contacts of this sub-step; returns how many, or minus what went wrong: see `stepping`.
+
+    ``old`` are those of the sub-step before, whose number is ``stamp - 1``; what they carried is the first guess.
+    """
+    sections, slots, layout = scene.sections, scene.slots, scene.sections.arbiter
+    count = 0
+    for i in range(sections.space.shape[0]):
+        found = carray(pointer(sections.pairs[i]), 1, LIST)[0]
+        if found.count > found.room:
+            return -1
+        arbiters = carray(pointer(found.address), found.room, np.int64)
+        for k in range(found.count):
+            arbiter = arbiters[k]
+            a = slot_of(integer(arbiter + layout.body_a), slots.address, slots.slot)
+            b = slot_of(integer(arbiter + layout.body_b), slots.address, slots.slot)
+            points = short(arbiter + layout.points)
+            if a == UNKNOWN or b == UNKNOWN:
+                return -2
+            if count + points > rows.point.shape[0]:
+                return -3
+            start, contact = count, integer(arbiter + layout.contacts)
+            for p in range(points):
+                _row(scene, rows, count, i, arbiter, contact + p * layout.size, a, b)
+                count += 1
+            _law(scene, rows, start, points)
+            _first_guess(rows, start, points, old, integer(arbiter + layout.data), stamp)
+            set_integer(arbiter + layout.data, (stamp << 24) | (start + 1))
+    return count
+
+
+@compiled(nogil=True)
+def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: int, a: int, b: int) -> None:
+    """One contact; the smaller slot becomes end a: structure and sheet before slices."""
+    layout, place = scene.sections.arbiter, scene.sections.body
+    body_a, body_b = integer(arbiter + layout.body_a), integer(arbiter + layout.body_b)
+    xa, za = real(body_a + place.x) + real(contact + layout.r1), real(body_a + place.z) + real(contact + layout.r1 + 8)
+    xb, zb = real(body_b + place.x) + real(contact + layout.r2), real(body_b + place.z) + real(contact + layout.r2 + 8)
+    nx, nz = real(arbiter + layout.n), real(arbiter + layout.n + 8)
+    depth = (xa - xb) * nx + (za - zb) * nz
+    if a > b:
+        a, b, nx, nz = b, a, -nx, -nz
+    point = rows.point[c]
+    point.a, point.b = scene.plates.moved.shape[0] - 1, scene.slices.plate[b]
+    point.edge, point.kind, point.slot_a, point.slot_b = -1, ICE, a, b
+    point.feature = integer(contact + layout.hash)
+    point.x, point.y, point.z = 0.5 * (xa + xb), scene.sections.y[section], 0.5 * (za + zb)
+    n_y = 0.0
+    if a == STRUCTURE_SLOT:
+        point.kind = STRUCTURE
+        n_y = nx * _bearing(scene.sections, section, point)
+    elif a == SHEET_SLOT:
+        point.kind, point.edge = SHEET, section
+    else:
+        point.a = scene.slices.plate[a]
+        n_y = _lean(scene, a, b, nx, nz)
+    p = 1.0 / np.sqrt(1.0 + n_y * n_y)
+    ux, uy, uz = p * nx, p * n_y, p * nz
+    set_way(rows.way[c, 0], ux, uy, uz)
+    set_way(rows.way[c, 1], -nz, 0.0, nx)
+    set_way(rows.way[c, 2], uy * nx, -uz * nz - ux * nx, uy * nz)
+    point.depth = p * depth
+    set_arms(rows, c, scene.plates, scene.edges)
+
+
+@compiled(nogil=True)
+def _bearing(sections: Sections, section: int, at: Record) -> float:
+    """n_y / n_x of the structure at a point in a section, see `cut`."""
+    faces = sections.faces[sections.offset[section] : sections.offset[section + 1]]
+    face = faces[nearest(faces, at.x, at.z)]
+    ratio: float = face.constant
+    if face.radial != 0.0:
+        x = at.x if abs(at.x) * STEEPEST > abs(at.y) else np.copysign(max(abs(at.y), 1e-9) / STEEPEST, at.x)
+        ratio += face.radial * at.y / x
+    return ratio
+
+
+@compiled(nogil=True)
+def _lean(scene: Scene, a: int, b: int, nx: float, nz: float) -> float:
+    """n_y over the part in the plane of the normal of two slices: that of the face, or faces, which it belongs to."""
+    y = across = 0.0
+    for side in range(2):
+        s, sign = (a, 1.0) if side == 0 else (b, -1.0)
+        r = scene.plates.rotation[scene.slices.plate[s]]
+        h = max(np.hypot(r[0, 0], r[2, 0]), 1e-12)
+        cos, sin = r[0, 0] / h, r[2, 0] / h
+        px, pz = sign * (cos * nx + sin * nz), sign * (cos * nz - sin * nx)
+        best, found = SAME_FACE, -1
+        for k in range(scene.slices.count[s]):
+            like = px * scene.slices.side[s, k, 0] + pz * scene.slices.side[s, k, 1]
+            if like > best:
+                best, found = like, k
+        if found >= 0:
+            f = scene.slices.face[s, found]
+            fx, fy, fz = times(r, f[0], f[1], f[2])
+            y += sign * fy
+            across += np.hypot(fx, fz)
+    if across == 0.0:
+        return 0.0
+    return min(max(y / across, -STEEPEST), STEEPEST)
+
+
+@compiled(nogil=True)
+def _law(scene: Scene, rows: Rows, start: int, points: int) -> None:
+    """What the contact of a pair carries before it crushes, shared by its points."""
+    first, length = rows.point[start], 0.0
+    if points > 1:
+        length = np.hypot(first.x - rows.point[start + 1].x, first.z - rows.point[start + 1].z)
+    width = min(scene.pitch, scene.widths[first.slot_b])
+    if first.slot_a >= 0:
+        width = min(width, scene.widths[first.slot_a])
+    for c in range(start, start + points):
+        rows.point[c].most = scene.strength * width * max(length, scene.shortest) / points
+
+
+@compiled(nogil=True)
+def _first_guess(rows: Rows, start: int, points: int, old: Rows, kept: int, stamp: int) -> None:
+    """Impulses of the same points one sub-step ago."""
+    first = (kept & 0xFFFFFF) - 1 if kept >> 24 == stamp - 1 else -1
+    for c in range(start, start + points):
+        own, at = rows.point[c], -1
+        if first >= 0:
+            for o in range(first, min(first + 2, old.point.shape[0])):
+                was = old.point[o]
+                if was.slot_a == own.slot_a and was.slot_b == own.slot_b and was.feature == own.feature:
+                    at = o
+        for d in range(3):
+            rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0

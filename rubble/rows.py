@@ -1,0 +1,137 @@
+"""Contacts of all sections as rows of the impulse solver.
+
+Each row has three directions: the normal n from end a to end b, and two along the face, t in the section's plane and s
+across it. Ends are plates; structure and sheet stand at end a, as the ground, and the sheet's edge moves on its own.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rubble.arrays import Array, IntArray, Record, Records, record
+from rubble.compiled import compiled
+from rubble.friction import rate_dependent
+from rubble.plates import Plates
+
+ICE, STRUCTURE, SHEET, JOINT = 0, 1, 2, 3  #: kinds of rows
+KINDS = ("ice", "structure", "sheet")
+HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
+
+
+#: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
+#: and the speed that it goes for [m/s]; plates a and b; section whose sheet is end a, else -1; kind, see above; numbers of
+#: the slices a and b, and which point of theirs it is
+POINT = record(
+    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed"),
+    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature"),
+)
+#: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit of
+#: relative speed moves [kg]; impulse [N s]; speed of b against a that it goes for [m/s]
+WAY = record(
+    *("x", "y", "z", "a_x", "a_y", "a_z", "b_x", "b_y", "b_z"),
+    *("ta_x", "ta_y", "ta_z", "tb_x", "tb_y", "tb_z", "mass", "impulse", "target"),
+)
+
+
+class Rows(NamedTuple):
+    """One row per point of contact; room for more than there are."""
+
+    point: Records  #: (c,) POINT
+    way: Records  #: (c, 3) WAY along n, t, s
+
+
+class Surface(NamedTuple):
+    """How contacts answer."""
+
+    mu_ice: float  #: ice on ice; negative: rate-dependent
+    mu_structure: float
+    restitution: float
+    bias: float  #: share of an overlap that is taken out in a sub-step
+    slop: float  #: overlap that is left alone [m]
+
+
+def room(count: int) -> Rows:
+    """Room for so many rows."""
+    return Rows(np.zeros(count, POINT), np.zeros((count, 3), WAY))
+
+
+class Edges(NamedTuple):
+    """The edge of the sheet in all sections: one body with a full matrix in place of an inverse mass."""
+
+    place: Array  #: (e, 2) of each, x and z [m]
+    motion: Array  #: (e, 2) velocity [m/s]
+    shift: Array  #: (e, 2) see `plates.Plates.shift`
+    driven: Array  #: (e, 2) velocity that the lattice says it has with the forces that it knows [m/s]
+    carried: Array  #: (e, 2) these forces [N]
+    yields: Array  #: (2, e, e) velocity in x, and in z, of each for an impulse on each [1/kg]
+    body: IntArray  #: (e,) address of its body in pymunk; 0 where there is no sheet
+
+
+@compiled(nogil=True)
+def speed(way: Record, a: Record, b: Record) -> float:
+    """Speed of b against a, both MOTION, along a direction of a row."""
+    found: float = way.x * (b.x - a.x) + way.y * (b.y - a.y) + way.z * (b.z - a.z)
+    found += way.b_x * b.a + way.b_y * b.b + way.b_z * b.c
+    found -= way.a_x * a.a + way.a_y * a.b + way.a_z * a.c
+    return found
+
+
+@compiled(nogil=True)
+def set_way(way: Record, x: float, y: float, z: float) -> None:
+    """A direction."""
+    way.x, way.y, way.z = x, y, z
+
+
+@compiled(nogil=True)
+def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
+    """Arms and effective masses of row c from its point, its ends and its directions."""
+    point = rows.point[c]
+    i, k, e = point.a, point.b, point.edge
+    position, world, inverse = plates.position, plates.world, plates.inverse_mass
+    ma, mb = inverse[i], inverse[k]
+    xa, ya, za = point.x - position[i, 0], point.y - position[i, 1], point.z - position[i, 2]
+    xb, yb, zb = point.x - position[k, 0], point.y - position[k, 1], point.z - position[k, 2]
+    for d in range(3):
+        way = rows.way[c, d]
+        ux, uy, uz = way.x, way.y, way.z
+        total = ma + mb
+        px, py, pz = yb * uz - zb * uy, zb * ux - xb * uz, xb * uy - yb * ux
+        way.b_x, way.b_y, way.b_z = px, py, pz
+        qx = world[k, 0, 0] * px + world[k, 0, 1] * py + world[k, 0, 2] * pz
+        qy = world[k, 1, 0] * px + world[k, 1, 1] * py + world[k, 1, 2] * pz
+        qz = world[k, 2, 0] * px + world[k, 2, 1] * py + world[k, 2, 2] * pz
+        way.tb_x, way.tb_y, way.tb_z = qx, qy, qz
+        total += px * qx + py * qy + pz * qz
+        if ma > 0.0:
+            px, py, pz = ya * uz - za * uy, za * ux - xa * uz, xa * uy - ya * ux
+            qx = world[i, 0, 0] * px + world[i, 0, 1] * py + world[i, 0, 2] * pz
+            qy = world[i, 1, 0] * px + world[i, 1, 1] * py + world[i, 1, 2] * pz
+            qz = world[i, 2, 0] * px + world[i, 2, 1] * py + world[i, 2, 2] * pz
+            total += px * qx + py * qy + pz * qz
+        else:
+            px = py = pz = qx = qy = qz = 0.0
+        way.a_x, way.a_y, way.a_z, way.ta_x, way.ta_y, way.ta_z = px, py, pz, qx, qy, qz
+        if e >= 0:
+            total += ux * ux * edges.yields[0, e, e] + uz * uz * edges.yields[1, e, e]
+        way.mass = 1.0 / total
+
+
+@compiled(nogil=True)
+def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surface, dt: float) -> None:
+    """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step."""
+    motion, moves = plates.motion, edges.motion
+    for c in range(count):
+        point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
+        a, b, e = motion[point.a], motion[point.b], point.edge
+        u = speed(n, a, b)
+        mu = surface.mu_structure if point.kind == STRUCTURE else surface.mu_ice
+        x, z = (moves[e, 0], moves[e, 1]) if e >= 0 else (0.0, 0.0)
+        u -= n.x * x + n.z * z
+        if mu < 0.0:
+            v, w = speed(t, a, b) - t.x * x - t.z * z, speed(s, a, b) - s.x * x - s.z * z
+            mu = rate_dependent(np.sqrt(v * v + w * w))
+        point.mu = mu
+        n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
+        point.shift_speed = surface.bias * max(point.depth - surface.slop, 0.0) / dt

@@ -1,0 +1,151 @@
+"""Impulses of all contacts over all sections: projected Gauss-Seidel with Coulomb's cone.
+
+Rows are solved one after the other, in the order in which they stand, each with what the others have found so far:
+
+    normal    0 <= J_n <= most, so that u_n reaches its target (restitution)
+    friction  |(J_t, J_s)| <= mu J_n, against the slip, on both ends
+    shift     0 <= J so that overlap recedes; it moves plates without a velocity (split impulse: no energy of motion)
+
+``most`` is what the ice carries before it crushes. A row that holds (a joint) has no bounds. The sheet's edge answers
+to an impulse in one section in all of them, by its matrix.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubble.arrays import Array, Record
+from rubble.compiled import compiled
+from rubble.plates import Plates
+from rubble.rows import Edges, Rows, speed
+
+
+@compiled(nogil=True)
+def _push(way: Record, a: Record, b: Record, ma: float, mb: float, j: float) -> None:
+    """An impulse j along a direction on b, and the opposite one on a; ``ma``, ``mb`` inverse masses."""
+    x, y, z = j * way.x, j * way.y, j * way.z
+    b.x += mb * x
+    b.y += mb * y
+    b.z += mb * z
+    b.a += j * way.tb_x
+    b.b += j * way.tb_y
+    b.c += j * way.tb_z
+    if ma > 0.0:
+        a.x -= ma * x
+        a.y -= ma * y
+        a.z -= ma * z
+        a.a -= j * way.ta_x
+        a.b -= j * way.ta_y
+        a.c -= j * way.ta_z
+
+
+@compiled(nogil=True)
+def push_edge(yields: Array, motion: Array, e: int, x: float, z: float) -> None:
+    """An impulse (x, z) of the rubble on the sheet in section e moves the edge in all sections."""
+    for f in range(motion.shape[0]):
+        motion[f, 0] += yields[0, e, f] * x
+        motion[f, 1] += yields[1, e, f] * z
+
+
+@compiled(nogil=True)
+def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
+    """Apply the impulses that the rows have kept from the last sub-step."""
+    motion, inverse = plates.motion, plates.inverse_mass
+    for c in range(count):
+        point = rows.point[c]
+        x = z = 0.0
+        for d in range(3):
+            way = rows.way[c, d]
+            if way.impulse != 0.0:
+                _push(way, motion[point.a], motion[point.b], inverse[point.a], inverse[point.b], way.impulse)
+                x, z = x + way.impulse * way.x, z + way.impulse * way.z
+        if point.edge >= 0:
+            push_edge(edges.yields, edges.motion, point.edge, -x, -z)
+
+
+@compiled(nogil=True)
+def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
+    """Take out overlap; ``edge``: how fast the sheet's edge recedes along n. Returns the impulse."""
+    new = max(point.shift + n.mass * (point.shift_speed - speed(n, a, b) + edge), 0.0)
+    j = new - point.shift
+    if j != 0.0:
+        point.shift = new
+        _push(n, a, b, ma, mb, j)
+    return j
+
+
+@compiled(nogil=True)
+def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
+    """Normal impulse of one row; returns by how much it has changed."""
+    new = n.impulse + n.mass * (n.target - speed(n, a, b) + edge)
+    if point.mu >= 0.0:
+        new = min(max(new, 0.0), point.most)
+    j = new - n.impulse
+    if j != 0.0:
+        n.impulse = new
+        _push(n, a, b, ma, mb, j)
+    return j
+
+
+@compiled(nogil=True)
+def _friction(
+    ways: tuple[Record, Record, Record], mu: float, a: Record, b: Record, ma: float, mb: float, x: float, z: float
+) -> tuple[float, float]:
+    """Friction of one row against an edge that moves with (x, z); returns by how much it has changed along t and s."""
+    n, t, s = ways
+    if n.impulse == 0.0 and t.impulse == 0.0 and s.impulse == 0.0:
+        return 0.0, 0.0
+    f = t.impulse + t.mass * (t.target - speed(t, a, b) + t.x * x + t.z * z)
+    g = s.impulse + s.mass * (s.target - speed(s, a, b) + s.x * x + s.z * z)
+    if mu >= 0.0:
+        size, most = np.sqrt(f * f + g * g), mu * n.impulse
+        if size > most:
+            f, g = f * most / size, g * most / size
+    j, k = f - t.impulse, g - s.impulse
+    t.impulse, s.impulse = f, g
+    _push(t, a, b, ma, mb, j)
+    _push(s, a, b, ma, mb, k)
+    return j, k
+
+
+@compiled(nogil=True)
+def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> None:
+    """All rows once."""
+    motion, shift, inverse = plates.motion, plates.shift, plates.inverse_mass
+    moves, shifts, yields = edges.motion, edges.shift, edges.yields
+    for c in range(count):
+        point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
+        i, k, e = point.a, point.b, point.edge
+        a, b, ma, mb = motion[i], motion[k], inverse[i], inverse[k]
+        if e < 0:
+            if deep:
+                _shift(point, n, shift[i], shift[k], ma, mb, 0.0)
+            _normal(point, n, a, b, ma, mb, 0.0)
+            _friction((n, t, s), point.mu, a, b, ma, mb, x=0.0, z=0.0)
+            continue
+        if deep:
+            j = _shift(point, n, shift[i], shift[k], ma, mb, n.x * shifts[e, 0] + n.z * shifts[e, 1])
+            if j != 0.0:
+                push_edge(yields, shifts, e, -j * n.x, -j * n.z)
+        j = _normal(point, n, a, b, ma, mb, n.x * moves[e, 0] + n.z * moves[e, 1])
+        if j != 0.0:
+            push_edge(yields, moves, e, -j * n.x, -j * n.z)
+        f, g = _friction((n, t, s), point.mu, a, b, ma, mb, x=moves[e, 0], z=moves[e, 1])
+        if f != 0.0 or g != 0.0:
+            push_edge(yields, moves, e, -f * t.x - g * s.x, -f * t.z - g * s.z)
+
+
+@compiled(nogil=True)
+def solve(rows: Rows, count: int, plates: Plates, edges: Edges, iterations: int) -> None:
+    """All rows, so many times; the shift of plates and edges starts from none."""
+    for i in range(plates.shift.shape[0]):
+        own = plates.shift[i]
+        own.x = own.y = own.z = own.a = own.b = own.c = 0.0
+    edges.shift[:] = 0.0
+    deep = False
+    for c in range(count):
+        rows.point[c].shift = 0.0
+        deep = deep or rows.point[c].shift_speed > 0.0
+    warm_start(rows, count, plates, edges)
+    for _ in range(iterations):
+        _sweep(rows, count, plates, edges, deep)

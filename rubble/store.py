@@ -1,0 +1,165 @@
+"""All plates in the order of their numbers, and the tables that kernels read, laid out anew when plates change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rubble.arrays import Array, Records, filled, rows
+from rubble.phases import AXIS, STATUS
+from rubble.physics import RubblePhysics
+from rubble.piece import Piece, Plate, Start, centre_of, moved_mass, volume_of
+from rubble.plates import Plates, empty, orient_all
+from rubble.pressure import EDGE
+from rubble.prism import Prism
+from rubble.slices import Pieces
+from rubble.water import Hulls
+
+#: of a plate over a window: impulse on the structure x, y, z [N s]; normal impulses on other ice, on the sheet; normal
+#: impulse on the structure, and weighted with x, y and z of the point [N s m]
+ON_PLATE = ("structure_x", "structure_y", "structure_z", "ice", "sheet", "push", "at_x", "at_y", "at_z")
+
+
+class Tables(NamedTuple):
+    """What follows from the plates, beside their motion."""
+
+    pieces: Pieces
+    numbers: Array  #: (p,) numbers of the pieces
+    hulls: Hulls
+    mass: Array  #: (n,) true mass [kg]
+    spin: Array  #: (n, 3, 3) true inertia [kg m2]
+    thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
+    axes: Records  #: (n,) AXIS
+    status: Records  #: (n,) STATUS
+    sums: Array  #: (n, 9) ON_PLATE over the window
+
+
+class Store:
+    """Adds and takes plates; `plates` and `tables` are valid after `lay_out`."""
+
+    def __init__(self, physics: RubblePhysics) -> None:
+        self.physics = physics
+        self.list: list[Plate] = []
+        self.plates = empty(0)
+        self._next, self._next_piece = 0, 0
+        self.tables: Tables
+        self.lay_out()
+
+    def make(self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: float) -> Plate:
+        """A plate of prisms at places (3,) in its axes; it has a number, and belongs to nobody yet."""
+        mass, centre, spin = centre_of(prisms)
+        pieces = [Piece(self._next_piece + k, prism, at - centre) for k, (prism, at) in enumerate(prisms)]
+        own = empty(1)
+        own.quaternion[0], own.flooded[0] = start.quaternion, flooded
+        orient_all(own)
+        own.position[0] = start.position + own.rotation[0] @ centre
+        own.velocity[0] = *start.velocity, *start.omega
+        plate = Plate(self._next, fragment, pieces, mass, spin, own, 0)
+        weigh(plate, self.physics)
+        self._next, self._next_piece = self._next + 1, self._next_piece + len(pieces)
+        return plate
+
+    def next_piece(self) -> int:
+        """A number for a new piece."""
+        self._next_piece += 1
+        return self._next_piece - 1
+
+    def add(self, *plates: Plate) -> None:
+        """Take in plates."""
+        self.list = sorted([*self.list, *plates], key=lambda p: p.id)
+        self.lay_out()
+
+    def take(self, *plates: Plate) -> None:
+        """Take out plates; they keep their motion."""
+        for plate in plates:
+            own = empty(1)
+            _copy(plate.rows, plate.row, own, 0)
+            plate.rows, plate.row = own, 0
+        out = {id(p) for p in plates}
+        self.list = [p for p in self.list if id(p) not in out]
+        self.lay_out()
+
+    def lay_out(self) -> None:
+        """Tables anew; the plates move into them."""
+        new = empty(len(self.list))
+        for i, plate in enumerate(self.list):
+            _copy(plate.rows, plate.row, new, i)
+            plate.rows, plate.row = new, i
+        orient_all(new)
+        self.plates = new
+        self.tables = _tables(self.list, self.physics)
+
+
+def weigh(plate: Plate, physics: RubblePhysics) -> None:
+    """Mass and inertia of a plate into its row."""
+    moved, inertia = moved_mass(plate, physics, volume_of(plate.pieces))
+    rows_, i = plate.rows, plate.row
+    rows_.moved[i], rows_.inverse_mass[i] = moved, 1.0 / moved
+    rows_.inertia[i], rows_.inverse[i] = inertia, np.linalg.inv(inertia)
+
+
+def _copy(source: Plates, i: int, target: Plates, k: int) -> None:
+    for a, b in zip(source, target, strict=True):
+        b[k] = a[i]
+
+
+def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
+    pieces = [(i, p) for i, plate in enumerate(plates) for p in plate.pieces]
+    owner = np.array([i for i, _ in pieces], np.int64)
+    y = np.array([p.centre[1] for _, p in pieces], np.float64)
+    width = np.array([p.prism.width for _, p in pieces], np.float64)
+    corners = [p.prism.polygon + p.centre[::2] for _, p in pieces]
+    status = np.zeros(len(plates), STATUS)
+    status["aligned"], status["sliding"] = [p.aligned for p in plates], [p.sliding for p in plates]
+    return Tables(
+        pieces=Pieces(
+            owner,
+            y,
+            width,
+            np.concatenate([np.zeros((0, 2)), *corners]),
+            np.cumsum([0, *map(len, corners)], dtype=np.int64),
+            np.zeros((len(pieces), 2), np.int64),
+        ),
+        numbers=np.array([p.number for _, p in pieces], np.int64),
+        hulls=_hulls(plates, pieces, owner, y, width, physics.g),
+        mass=np.array([p.mass for p in plates], np.float64),
+        spin=np.array([p.spin for p in plates]).reshape(-1, 3, 3),
+        thrust=np.array([p.thrust for p in plates]).reshape(-1, 6),
+        axes=_axes(plates, physics.thickness),
+        status=status,
+        sums=np.zeros((len(plates), len(ON_PLATE))),
+    )
+
+
+def _hulls(
+    plates: Sequence[Plate], pieces: Sequence[tuple[int, Piece]], owner: Array, y: Array, width: Array, g: float
+) -> Hulls:
+    edges = [_moved(p.prism.edges, p.centre) for _, p in pieces]
+    alone = np.array([len(plates[i].pieces) for i, _ in pieces], np.float64)
+    force = np.array([p.thrust[:3] - [0.0, 0.0, p.mass * g] for p in plates]).reshape(-1, 3)
+    return Hulls(
+        plate=owner,
+        y=y,
+        side=1.0 / (alone * width) if len(pieces) else np.zeros(0),
+        edges=np.concatenate([filled(EDGE, []), *edges]),
+        offset=np.cumsum([0, *map(len, edges)], dtype=np.int64),
+        weight=force,
+        moment=np.array([p.thrust[3:] for p in plates]).reshape(-1, 3),
+    )
+
+
+def _moved(edges: Records, centre: Array) -> Records:
+    out = edges.copy()
+    rows(out, "x0", 4)[:] += [centre[0], centre[2], centre[0], centre[2]]
+    return out
+
+
+def _axes(plates: Sequence[Plate], thickness: float) -> Records:
+    """A plate counts as next to a slope within its own reach and one thickness; its axis is that of a middle piece."""
+    found = []
+    for plate in plates:
+        prism = min(plate.pieces, key=lambda p: abs(p.centre[1])).prism
+        found.append((prism.reach + thickness, prism.long_axis, np.pi if prism.slender else np.pi / 2))
+    return filled(AXIS, found)

@@ -1,0 +1,194 @@
+"""A window of the rubble: what the compiled loop needs, and what is known when it has run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rubble.arrays import Array, IntArray
+from rubble.books import BOOKS
+from rubble.friction import coefficient
+from rubble.gather import Scene
+from rubble.phases import update_phases
+from rubble.physics import RubblePhysics
+from rubble.piece import Plate
+from rubble.plates import kinetic
+from rubble.rig import Joints
+from rubble.rows import Edges, Rows, Surface, room
+from rubble.sections import SectionTable
+from rubble.sheet import NODE
+from rubble.sides import no_sides
+from rubble.stepping import Sums, Window, advance_substeps
+from rubble.store import Store
+from rubble.water import WATER_IMPULSE, potential, water_of
+
+BIAS = 0.9**60.0  #: share of an overlap that is left after a second: Chipmunk's
+
+
+class Runner:
+    """Runs windows; keeps what goes on from one to the next: rows of the last sub-step, pressure, books."""
+
+    def __init__(self, physics: RubblePhysics) -> None:
+        self.physics, self.water = physics, water_of(physics)
+        self.yields: tuple[dict[int, int], Array] = {}, np.zeros((2, 0, 0))
+        self.books, self.water_impulse = np.zeros(1, BOOKS), np.zeros(1, WATER_IMPULSE)
+        self.momenta = np.zeros((3, 6))  #: that plates received since the start, see `books`
+        self.window = 0.0  #: length of the last one [s]
+        self._rows: tuple[Rows, Rows] = room(256), room(256)
+        self._count = np.zeros(2, np.int64)
+        self._pressure: dict[int, Array] = {}
+        self.budget: dict[str, Array] = {}
+        self.power_on_sheet = 0.0
+
+    @property
+    def contacts(self) -> int:
+        """Points of contact in the last sub-step."""
+        return int(self._count[0])
+
+    def advance(self, store: Store, sections: SectionTable, joints: Joints, n: int) -> None:
+        """Do ``n`` sub-steps."""
+        renamed = sections.cut(store)
+        if renamed is not None:
+            self._rename(renamed)
+        tables, plates = store.tables, store.plates
+        tables.sums[:] = 0.0
+        self.water_impulse[:] = 0
+        nodes, offset = _nodes(sections)
+        edges = self._edges(sections)
+        pressure = self._known_pressure(store)
+        sums = Sums(tables.sums, nodes, offset, self.books, self.water_impulse, pressure, self.momenta, self._count)
+        before, sheet = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
+        done, window = 0, Window(
+            int(self.physics.iterations), self._surface(), self.water, tables.hulls, tables.thrust, no_sides(), joints
+        )
+        while done < n:
+            scene = self._scene(store, sections, edges)
+            step = advance_substeps(n - done, window, scene, *self._rows, sums)
+            if step < 0:
+                raise RuntimeError(f"rubble: {WRONG[step]} in a sub-step; take out blocks that overlap")
+            done += step
+            self._make_room()
+        sections.make_room()
+        _keep(sections, edges, nodes, offset)
+        self._pressure = {p.id: pressure[i] for i, p in enumerate(store.list)}
+        self.window = n * self.physics.substep
+        self.power_on_sheet = (float(self.books["on_sheet"][0]) - sheet) / self.window
+        self._balance(store, before)
+
+    def _scene(self, store: Store, sections: SectionTable, edges: Edges) -> Scene:
+        p, slices = self.physics, sections.slices
+        width = store.tables.pieces.width[slices.piece]
+        strength, shortest = p.contact_strength * p.substep, 2.0 * p.slop
+        return Scene(
+            plates=store.plates,
+            slices=slices,
+            sections=sections.for_kernels,
+            slots=sections.slots,
+            edges=edges,
+            dt=p.substep,
+            pitch=sections.pitch,
+            widths=width,
+            strength=strength,
+            shortest=shortest,
+        )
+
+    def _surface(self) -> Surface:
+        p = self.physics
+        bias = 1.0 - BIAS**p.substep
+        return Surface(coefficient(p.mu_ice_ice), coefficient(p.mu_structure), p.restitution, bias, p.slop)
+
+    def _edges(self, sections: SectionTable) -> Edges:
+        """The sheet's edges in all sections, still where there is no sheet."""
+        n, (known, yields) = len(sections.by_key), self.yields
+        edges = Edges(*(np.zeros((n, 2)) for _ in range(5)), np.zeros((2, n, n)), np.zeros(n, np.int64))
+        at = np.array([known.get(k, -1) for k in sections.by_key], np.int64)
+        on = np.flatnonzero(at >= 0)
+        edges.yields[:, on[:, None], on[None, :]] = yields[:, at[on][:, None], at[on][None, :]]
+        for e, section in enumerate(sections.by_key.values()):
+            if (sheet := section.sheet) is not None:
+                edges.place[e], edges.motion[e], edges.driven[e] = sheet.place, sheet.driven, sheet.driven
+                edges.carried[e], edges.body[e] = sheet.applied, sheet.address
+        return edges
+
+    def _known_pressure(self, store: Store) -> Array:
+        unknown = np.full(6, np.nan)
+        return np.array([self._pressure.get(p.id, unknown) for p in store.list]).reshape(-1, 6)
+
+    def _rename(self, new: IntArray) -> None:
+        """Slices have new numbers; rows of slices that are gone are no first guess any more."""
+        for rows in self._rows:
+            for end in ("slot_a", "slot_b"):
+                old = rows.point[end]
+                on = (old >= 0) & (old < len(new))
+                old[on] = np.where(new[old[on]] >= 0, new[old[on]], -5)
+
+    def _make_room(self) -> None:
+        if 2 * int(self._count[0]) > len(self._rows[0].point):
+            larger = 4 * len(self._rows[0].point)
+            self._rows = _grown(self._rows[0], larger), _grown(self._rows[1], larger)
+
+    def _balance(self, store: Store, before: Array) -> None:
+        """Mean forces x and z that carry the plates; ``before``: momentum with added mass at the start."""
+        w, T, tables = self.water_impulse, self.window, store.tables
+        gain = store.plates.moved[:-1] @ store.plates.velocity[:-1, :3] - before
+        pair = {n: np.array([float(w[f"{n}_x"][0]), float(w[f"{n}_z"][0])]) / T for n in ("flooded", "dry", "drag")}
+        self.budget = {
+            "flooded_rubble": pair["flooded"] + tables.hulls.weight.sum(axis=0)[[0, 2]],
+            "dry_tops": pair["dry"],
+            "drag": pair["drag"],
+            "inertia": -gain[[0, 2]] / T,
+        }
+
+    def after(self, store: Store, sections: SectionTable, time: float) -> None:
+        """What follows from a window: phases of the plates. RuntimeError if a motion is not finite."""
+        finite = np.isfinite(store.plates.velocity[:-1]).all(axis=1)
+        if not finite.all():
+            number = store.list[int(np.argmin(finite))].id
+            raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
+        update_phases(store, sections, self.physics.align_tolerance)
+
+    def energies(self, store: Store) -> tuple[float, Array]:
+        """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""
+        p, out = self.physics, np.zeros(len(store.list))
+        potential(store.plates, store.tables.hulls, store.tables.mass, self.water.rho_g, p.g, p.afloat, out)
+        return float(kinetic(store.plates)), out
+
+    def energy_of(self, plate: Plate) -> float:
+        """Kinetic energy of a plate, and its energy of weight and water [J]."""
+        return sum(self.parts_of(plate))
+
+    def parts_of(self, plate: Plate) -> tuple[float, float]:
+        """The same apart."""
+        alone = Store(self.physics)
+        held = plate.rows, plate.row
+        alone.add(plate)
+        moving, resting = self.energies(alone)
+        plate.rows, plate.row = held
+        return moving, float(resting[0])
+
+
+def _nodes(sections: SectionTable) -> tuple[Any, IntArray]:
+    own = [s.sheet.nodes if s.sheet is not None else np.zeros(0, NODE) for s in sections.by_key.values()]
+    nodes = np.concatenate([np.zeros(0, NODE), *own])
+    for axis in "xyz":
+        nodes[f"impulse_{axis}"] = 0.0
+    return nodes, np.cumsum([0, *map(len, own)], dtype=np.int64)
+
+
+def _keep(sections: SectionTable, edges: Edges, nodes: Any, offset: IntArray) -> None:
+    """Edges and nodes of the sheet as the window has left them."""
+    for e, section in enumerate(sections.by_key.values()):
+        if section.sheet is not None:
+            section.sheet.place, section.sheet.nodes = edges.place[e].copy(), nodes[offset[e] : offset[e + 1]].copy()
+            section.sheet.driven = edges.motion[e].copy()
+
+
+def _grown(rows: Rows, count: int) -> Rows:
+    new = room(count)
+    for a, b in zip(rows, new, strict=True):
+        b[: len(a)] = a
+    return new
+
+
+WRONG = {-1: "too many pairs in contact at once", -2: "contact with an unknown body", -3: "too many contacts at once"}
