@@ -153,10 +153,8 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         thickness=i.thickness,
         iterations=r.iterations,
         substep=r.substep,
-        sheet_mass=i.density * i.thickness * r.columns_per_section * grid.d**2,
         backfill=r.backfill,
         filling_time=r.filling_time,
-        feed_speed=scenario.drift.velocity,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,
         current=scenario.water.current or (0.0, 0.0),
     )
@@ -168,7 +166,6 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         physics,
         pitch=pitch,
         origin=grid.y0 + 0.5 * (pitch - grid.d),
-        columns_per_section=r.columns_per_section,
         domain=domain,
         threads=r.threads,
     )

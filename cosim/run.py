@@ -163,7 +163,6 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
         "mass_error": ledger.mass_error,
         "momentum_error": ledger.momentum_error,
         "angular_momentum_error": ledger.angular_momentum_error,
-        "angular_momentum_change": ledger.angular_momentum_change,
         "energy_residual": ledger.energy.relative,
         "sheet_energy_residual": ledger.sheet_energy_residual,
         **ledger.energy.terms,

@@ -26,9 +26,7 @@ class Ledger:
     handed_over_mass: float = 0.0  #: that has become blocks [kg]
     mass_error: float = 0.0  #: largest so far, relative to the initial mass
     momentum_error: float = 0.0  #: largest of all hand-overs, relative
-    angular_momentum_error: float = 0.0  #: the same about the fragment's centre, in the x-z plane
-    #: largest part of a fragment's angular momentum that went because blocks do not have their mass at the nodes
-    angular_momentum_change: float = 0.0
+    angular_momentum_error: float = 0.0  #: the same about the fragment's centre
     sheet_energy_residual: float = 0.0  #: of the sheet in its drifting frame, relative to the work done on it
     energy: EnergyBalance = field(default_factory=EnergyBalance)  #: of the whole system
     _work: float = 0.0
@@ -39,7 +37,6 @@ class Ledger:
         self.handed_over_mass += moved.mass - moved.trimmed
         self.momentum_error = max(self.momentum_error, moved.momentum_error)
         self.angular_momentum_error = max(self.angular_momentum_error, moved.angular_momentum_error)
-        self.angular_momentum_change = max(self.angular_momentum_change, moved.angular_momentum_change)
         self._check("momentum of a hand-over", moved.momentum_error, t_ns)
         self._check("angular momentum of a hand-over", moved.angular_momentum_error, t_ns)
 

@@ -96,7 +96,7 @@ class Scheduler:
 
     def move_rubble(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
         """The rubble's window against edges of the sheet that already answer to the forces ``carried``."""
-        self.rubble.set_sheet(edges, carried)
+        self.rubble.set_sheet(edges, carried, self.sheet.compliance(list(edges)))
         self.rubble.advance(self.window_ns)
 
     def save(self) -> Restore:

@@ -65,13 +65,13 @@ def rest(
     layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], *, longest: float = 300.0, window: float = 0.5
 ) -> Pile:
     """Let the blocks come to rest under the sheet as it is now; arguments as in `settle`."""
-    domain, layer.domain, layer.hold_lateral = layer.domain, Domain(), True
+    domain, layer.domain, layer.runner.planar = layer.domain, Domain(), True
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
     calm, steps = 1.0, round(window / layer.physics.substep)
     while calm > CALM and layer.time < longest:
         layer.advance(steps)
         calm = _calm(layer, fronts)
-    time, layer.time, layer.hold_lateral, layer.domain = layer.time, 0.0, False, domain
+    time, layer.time, layer.runner.planar, layer.domain = layer.time, 0.0, False, domain
     layer.set_form_drag(layer.physics.form_drag)
     if calm > CALM:
         raise RuntimeError(
@@ -132,7 +132,7 @@ def measure(
             ice, pores = ice + found[0], pores + found[1]
             slopes.append(found[2])
             depths.append(found[3])
-    on_sheet = sum(float(layer.sheet_forces(key)[:, 1].sum()) for key in layer.sections)
+    on_sheet = sum(float(layer.sheet_forces(key)[:, 2].sum()) for key in layer.sections)
     lift = float(layer.load_on_structure[:, 2].sum()) + on_sheet
     return Pile(
         blocks=len(layer.blocks),
@@ -151,7 +151,7 @@ def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tup
     """Ice and pore area [m^2], slope of the rear flank [rad] and depth below the sheet [m] of one section."""
     section = layer.section(key)
     solids = section.cut.polygons
-    outlines = [b.outline for b in section.blocks]
+    outlines = [b.outline for b in layer.blocks if layer.key_at(float(b.position[1])) == key]
     if not outlines:
         return None
     corners = np.concatenate(outlines)

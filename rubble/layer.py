@@ -71,6 +71,10 @@ class RubbleLayer:
         """The section with this number, made when first asked for."""
         return self.table_of_sections.section(key)
 
+    def sections_in_use(self) -> list[int]:
+        """Sections whose plane cuts a plate, or that hold one that none cuts, ascending."""
+        return self.table_of_sections.in_use(self.store)
+
     def centre(self, key: int) -> float:
         """Y of a section's plane [m]."""
         return self.origin + key * self.pitch
@@ -115,6 +119,10 @@ class RubbleLayer:
         plate = self._make(fragment, prisms, start, flooded)
         self.store.add(plate)
         return plate.id
+
+    def try_plate(self, prisms: Sequence[tuple[Prism, Array]], start: Start) -> Plate:
+        """The plate that `add_plate` would make, without adding it."""
+        return self._make(-1, prisms, start, None)
 
     def _make(
         self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: bool | None

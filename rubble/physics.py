@@ -33,13 +33,11 @@ class RubblePhysics:
     iterations: int = 30  #: of the impulse solver; at least the length of a chain of blocks
     substep: float = 0.005  #: constant [s]
     align_tolerance: float = 0.0873  #: a block is aligned within this angle of the slope [rad]
-    sheet_mass: float = 5e4  #: mass of the edge of a still sheet, under which rubble settles [kg]
     backfill: Backfill = "full"  #: whether the top of a new block floods: at once, never, or over `filling_time`
     filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
     backfill_level: float = 0.0  #: height of the water on the tops, <= 0 [m]
     contact_strength: float = inf  #: pressure at which a contact crushes [Pa]
     current: tuple[float, float] = (0.0, 0.0)  #: velocity of the water along x and y [m/s]
-    feed_speed: float = inf  #: with which ice comes against the structure; see `lateral` [m/s]
 
     def __post_init__(self) -> None:
         for f in fields(self):
@@ -84,7 +82,7 @@ class RubblePhysics:
         return 1.0 / self.filling_time if self.backfill == "filling" else 0.0
 
 
-_MAY_BE_INFINITE = ("contact_strength", "feed_speed")
+_MAY_BE_INFINITE = ("contact_strength",)
 _POSITIVE = (
     "rho_i",
     "rho_w",
@@ -92,8 +90,6 @@ _POSITIVE = (
     "slop_ratio",
     "iterations",
     "substep",
-    "sheet_mass",
     "filling_time",
     "contact_strength",
-    "feed_speed",
 )

@@ -115,6 +115,22 @@ def turned(angle: float) -> Array:
     return np.array([cos(angle / 2), 0.0, -sin(angle / 2), 0.0])
 
 
+def quaternion_of(axes: Array) -> Array:
+    """Quaternion (4,) of the turn that brings x, y, z to the columns of ``axes`` (3, 3), turned by less than 180 deg."""
+    w = 0.5 * np.sqrt(max(1.0 + float(np.trace(axes)), 1e-12))
+    d = np.array([axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]])
+    found = np.array([w, *(d / (4.0 * w))])
+    return np.asarray(found / np.linalg.norm(found))
+
+
+def prism_at(outline: Array, y: float, width: float, density: float) -> tuple[Prism, Array]:
+    """A prism of one width with its place (3,) from an outline (k, 2), both in the axes of its plate."""
+    own = _checked(outline)
+    ends = np.array([own[:, 0].min(), own[:, 0].max()])
+    prism, (x, z) = make_prism(own, ends, np.array([width]), density)
+    return prism, np.array([x, y, z])
+
+
 def one_piece(slab: Slab, y: float, velocity: Sequence[float], omega: float) -> tuple[list[tuple[Prism, Array]], Start]:
     """The prism of a slab with its place, and its start: what `assemble` needs for a plate of one piece."""
     angle = slab.angle

@@ -49,6 +49,11 @@ class SectionTable:
             self.changed = True
         return self.by_key[key]
 
+    def in_use(self, store: Store) -> list[int]:
+        """Numbers of the sections that the plates stand in now, ascending."""
+        find_ranges(store.plates, store.tables.pieces, self.origin, self.pitch)
+        return [int(k) for k in np.unique(_pairs(store.tables.pieces)[1])]
+
     def cut(self, store: Store) -> IntArray | None:
         """Cut all slices anew. Returns the new number of each old slice, -1 if it is gone; None if all are the same."""
         tables, h = store.tables, self.physics.thickness
@@ -119,11 +124,6 @@ class SectionTable:
             if 2 * section.pairs.count > section.pairs.capacity:
                 section.pairs.reserve(4 * section.pairs.capacity)
 
-    def rebuild(self) -> None:
-        """New spaces with the same sections and no slices: what goes on from here does not depend on what was."""
-        for section in self.by_key.values():
-            section.connect()
-        self._made, self._names, self.slices, self.changed = {}, np.zeros(0, np.int64), _rows(0), True
 
     def __getstate__(self) -> dict[str, Any]:
         gone = ("_made", "_names", "slices", "slots", "for_kernels", "_shapes", "_bodies", "solids")

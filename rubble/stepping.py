@@ -10,7 +10,7 @@ from rubble.arrays import Array, IntArray, Records
 from rubble.books import book_contacts, kick, outside, sum_contacts
 from rubble.compiled import compiled
 from rubble.gather import Scene, find_pairs, gather
-from rubble.plates import move_all
+from rubble.plates import Plates, move_all
 from rubble.rig import Joints, joint_rows
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
@@ -31,6 +31,7 @@ class Window(NamedTuple):
     thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
     sides: Sides
     joints: Joints
+    planar: bool  #: plates keep their y, and do not roll or yaw
 
 
 class Sums(NamedTuple):
@@ -80,7 +81,11 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         for e in range(edges.place.shape[0]):
             push_edge(edges.yields, edges.motion, e, -dt * edges.carried[e, 0], -dt * edges.carried[e, 1])
         kicked, kicked_edge = plates.motion.copy(), edges.motion.copy()
+        if window.planar:
+            _flatten(plates)
         solve(rows, found, plates, edges, window.iterations)
+        if window.planar:
+            _flatten(plates)
         book_contacts(rows, found, kicked, kicked_edge, plates, edges, books)
         sum_contacts(rows, found, sums.plate, sums.node, sums.offset, sums.momenta)
         if found > 0 and 2 * found > rows.point.shape[0]:
@@ -99,3 +104,11 @@ def _sum_water(forces: Array, dt: float, sums: Records) -> None:
         out.dry_z += dt * forces[i, 1, 2]
         out.drag_x += dt * forces[i, 2, 0]
         out.drag_z += dt * forces[i, 2, 2]
+
+
+@compiled(nogil=True)
+def _flatten(plates: Plates) -> None:
+    """Take what leads out of the plane from all motions."""
+    for i in range(plates.moved.shape[0] - 1):
+        v, s = plates.motion[i], plates.shift[i]
+        v.y = v.a = v.c = s.y = s.a = s.c = 0.0

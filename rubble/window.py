@@ -34,6 +34,7 @@ class Runner:
         self.yields: tuple[dict[int, int], Array] = {}, np.zeros((2, 0, 0))
         self.books, self.water_impulse = np.zeros(1, BOOKS), np.zeros(1, WATER_IMPULSE)
         self.momenta = np.zeros((3, 6))  #: that plates received since the start, see `books`
+        self.planar = False  #: plates move in their x-z plane only, while initial rubble settles
         self.window = 0.0  #: length of the last one [s]
         self._rows: tuple[Rows, Rows] = room(256), room(256)
         self._count = np.zeros(2, np.int64)
@@ -60,7 +61,7 @@ class Runner:
         sums = Sums(tables.sums, nodes, offset, self.books, self.water_impulse, pressure, self.momenta, self._count)
         before, sheet = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
         done, window = 0, Window(
-            int(self.physics.iterations), self._surface(), self.water, tables.hulls, tables.thrust, no_sides(), joints
+            int(self.physics.iterations), self._surface(), self.water, tables.hulls, tables.thrust, no_sides(), joints, self.planar
         )
         while done < n:
             scene = self._scene(store, sections, edges)

@@ -22,6 +22,7 @@ class BlockTable:
     mass: Array  #: (n,) [kg]
     width: Array  #: (n,) mean extent along y [m]
     position: Array  #: (n, 3) centre of mass [m]
+    quaternion: Array  #: (n, 4) w, x, y, z: turns the axes that a plate had at its birth into the present ones
     angle: Array  #: (n,) rotation about -y, counter-clockwise in the x-z picture [rad]
     velocity: Array  #: (n, 3) [m/s]
     omega: Array  #: (n,) rate of `angle` [rad/s]
@@ -45,6 +46,7 @@ class BlockTable:
             mass=f,
             width=f,
             position=np.empty((0, 3)),
+            quaternion=np.empty((0, 4)),
             angle=f,
             velocity=np.empty((0, 3)),
             omega=f,
@@ -65,8 +67,7 @@ class HandOver:
     mass: float  #: of the fragment, without what was crushed before [kg]
     trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
     momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
-    angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, in the x-z plane
-    angular_momentum_change: float = 0.0  #: part of it that goes because a block has its mass in its body, not at nodes
+    angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, three components
 
 
 class RubbleParticipant(Protocol):
@@ -114,11 +115,11 @@ class RubbleParticipant(Protocol):
         """Numbers of the sections in which the rubble must know where the sheet is, ascending."""
         ...
 
-    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """The sheet by section in the coming window; a section without an entry has no sheet.
 
-        ``carried`` are the forces of the rubble that the sheet already answers to in this motion: the edge yields to
-        what comes on top of them.
+        ``carried`` are the forces of the rubble that the sheet already answers to in this motion: the edges yield to
+        what comes on top of them, by their ``compliance`` (2, k, k) [m/N] after a window.
         """
         ...
 

@@ -63,8 +63,8 @@ class SheetEdge:
     """The sheet in one section as the rubble meets it in a window: nodes of its front rows, front first.
 
     Places are those at the start of the window, velocities the means over it, both with the rubble's forces of the
-    window before; what these forces change since, the edge answers as an oscillator with this stiffness and inertia
-    (see `coupling.sheet_port.yielding`). The ice is as thick as the rubble's blocks.
+    window before; to what these forces change since, all edges answer together (`SheetParticipant.compliance`). The ice
+    is as thick as the rubble's plates.
     """
 
     x: Array  #: (m,) node positions along x, decreasing [m]
@@ -72,8 +72,6 @@ class SheetEdge:
     front: float  #: x of the sheet's foremost point, at most half a cell ahead of x[0] [m]
     velocity: Array  #: (m, 2) velocity of the nodes in x and z [m/s]
     nodes: IntArray  #: (m,) node numbers of the lattice, to which forces return
-    stiffness: tuple[float, float]  #: of the edge in x and z [N/m]
-    inertia: tuple[float, float]  #: mass that moves with the edge in x and z [kg]
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,6 +157,13 @@ class SheetParticipant(Protocol):
         """The same at the start of the window, with the mean velocity over it: it ends where the sheet is.
 
         Without the nodes that have left in the window.
+        """
+        ...
+
+    def compliance(self, sections: Sequence[int]) -> Array:
+        """Displacement in x, and in z, of the edges in these sections after a window under one newton on each of them.
+
+        (2, k, k) [m/N], symmetric; the sections are those of `edges` and `path`, in their order.
         """
         ...
 

@@ -1,8 +1,8 @@
-"""From a fragment of the sheet to rigid blocks, one per section and run of rows.
+"""From a fragment of the sheet to a rigid plate: its pieces, column by column, and the motion of its nodes.
 
-The block is the prism that the run of nodes makes: as long as their ice, as thick as the sheet, turned as the line
-through the nodes, with the edge cut off where it was crushed. Its linear and angular momentum are those of the nodes.
-What then still lies inside the structure is cut away by the rubble and counted as crushed.
+The plate lies in the plane through the fragment's nodes. Each gapless run of a column is a piece, as long as its ice,
+as thick as the sheet, with the edge cut off where it was crushed. The plate has the linear and the angular momentum of
+the nodes, all six components: whatever ice does not move as a rigid body does, that part of its energy is released.
 """
 
 from __future__ import annotations
@@ -16,108 +16,80 @@ from coupling.interface import Array, Fragment, IntArray
 
 
 @dataclass(frozen=True)
-class BlockBirth:
-    """A block before the structure trims it."""
+class PieceBirth:
+    """A piece before the structure trims it, in the axes of its plate."""
 
-    polygon: Array  #: (k, 2) outline in world x, z, counter-clockwise [m]
-    cuts: Array  #: (s + 1,) places along the block's axis between which its width is constant [m]
-    widths: Array  #: (s,) [m]
-    angle: float  #: of the axis, from x towards z [rad]
-    y: float  #: middle of its ice [m]
-    mass: float  #: of its nodes, without what was crushed [kg]
-    centre: Array  #: (2,) centre of mass of its nodes [m]
-    velocity: Array  #: (3,) of the centre of mass [m/s]
-    omega: float  #: from x towards z [rad/s]
-    inertia: float  #: moment of inertia of its nodes about their centre [kg m2]
-
-    def momenta(self, about: Array) -> Array:
-        """Momentum x, y, z of its ice, and angular momentum about a point (2,) in the x-z plane, (4,)."""
-        arm, p = self.centre - about, self.mass * self.velocity
-        return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + self.inertia * self.omega])
+    polygon: Array  #: (k, 2) outline in x, z, counter-clockwise [m]
+    width: float  #: [m]
+    y: float  #: of its middle [m]
 
 
-def centre_of(fragment: Fragment) -> Array:
-    """Centre of mass of a fragment's nodes in the x-z plane (2,) [m]."""
-    mass = np.maximum(fragment.mass, 0.0)
-    return np.average(fragment.position[:, [0, 2]], axis=0, weights=mass if mass.any() else fragment.length)
+@dataclass(frozen=True)
+class Momenta:
+    """Of a fragment's nodes."""
+
+    linear: Array  #: (3,) [N s]
+    angular: Array  #: (3,) about a point [N m s]
+    scale: Array  #: (2,) what each would be if no parts cancelled
+
+    @classmethod
+    def of(cls, f: Fragment, thickness: float, about: Array) -> Momenta:
+        """About a point (3,)."""
+        mass = np.maximum(f.mass, 0.0)[:, None]
+        arm, p = f.position - about, mass * f.velocity
+        spin = np.cross(arm, p)
+        spin[:, 1] += mass[:, 0] * thickness**2 / 12.0 * f.tilt_rate  # rotary inertia of a node (2.22)
+        scale = np.array([np.abs(p).sum(), np.abs(spin).sum()])
+        return cls(p.sum(axis=0), spin.sum(axis=0), scale)
 
 
-def momenta_of(fragment: Fragment, thickness: float, about: Array) -> tuple[Array, Array]:
-    """Momentum of a fragment's nodes x, y, z and angular momentum about a point in the x-z plane (4,), and their scale.
+def frame_of(f: Fragment) -> tuple[Array, Array]:
+    """A point (3,) of the plane through the middle of a fragment's ice, and its axes as columns (3, 3)."""
+    volume = f.length * f.width
+    at = _ice(f)
+    centre = np.average(at, axis=0, weights=volume)
+    d = at - centre
+    xx, yy, xy = (float((volume * a).sum()) for a in (d[:, 0] ** 2, d[:, 1] ** 2, d[:, 0] * d[:, 1]))
+    xz, yz = float((volume * d[:, 0] * d[:, 2]).sum()), float((volume * d[:, 1] * d[:, 2]).sum())
+    least, own = 1e-9 * float(volume.sum()), -float(np.average(np.tan(f.tilt), weights=volume))
+    if xx * yy - xy**2 > least * max(xx, yy, least):
+        rise, lean = (xz * yy - yz * xy) / (xx * yy - xy**2), (yz * xx - xz * xy) / (xx * yy - xy**2)
+    elif xx > least:
+        rise, lean = xz / xx, 0.0
+    else:
+        rise, lean = own, (yz / yy if yy > least else 0.0)
+    up = np.array([-rise, -lean, 1.0]) / np.sqrt(1.0 + rise**2 + lean**2)
+    ahead = np.array([1.0, 0.0, rise]) / np.sqrt(1.0 + rise**2)
+    return centre, np.column_stack([ahead, np.cross(up, ahead), up])
 
-    The scale (4,) is what they would be if no parts cancelled. ``thickness`` of the ice [m].
-    """
-    mass, v = np.maximum(fragment.mass, 0.0)[:, None], fragment.velocity
-    arm, own = fragment.position[:, [0, 2]] - about, mass[:, 0] * thickness**2 / 12.0
-    parts = np.column_stack(
-        (mass * v, mass[:, 0] * arm[:, 0] * v[:, 2], -mass[:, 0] * arm[:, 1] * v[:, 0], -own * fragment.tilt_rate)
-    )
-    total, scale = parts.sum(axis=0), np.abs(parts).sum(axis=0)
-    return np.append(total[:3], total[3:].sum()), np.append(np.full(3, scale[:3].max()), scale[3:].sum())
+
+def _ice(f: Fragment) -> Array:
+    """Middles of the nodes' ice (n, 3) [m]."""
+    at = f.position.copy()
+    ahead = f.lead - 0.5 * f.length
+    at[:, 0] += ahead
+    at[:, 2] -= ahead * np.tan(f.tilt)
+    return at
 
 
-def births(fragment: Fragment, thickness: float, columns_per_section: int) -> Iterator[BlockBirth]:
-    """The blocks of a fragment: per section, then per gapless run of rows, front to rear."""
-    section = fragment.column // columns_per_section
-    for key in np.unique(section):
-        rows = np.unique(fragment.row[section == key])
+def births(f: Fragment, thickness: float, origin: Array, axes: Array) -> Iterator[PieceBirth]:
+    """The pieces of a fragment in the axes of its plate: per column, then per gapless run of rows, front to rear."""
+    for column in np.unique(f.column):
+        rows = np.unique(f.row[f.column == column])
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
-            yield _birth(fragment, thickness, np.flatnonzero((section == key) & np.isin(fragment.row, run)))
+            n = np.flatnonzero((f.column == column) & np.isin(f.row, run))
+            if f.mass[n].sum() > 0.0:
+                yield _birth(f, thickness, n[np.argsort(f.row[n])], (_ice(f)[n] - origin) @ axes)
 
 
-def _birth(f: Fragment, h: float, n: IntArray) -> BlockBirth:
-    ice_x = f.position[n, 0] + f.lead[n] - 0.5 * f.length[n]
-    ice_z = f.position[n, 2] - (ice_x - f.position[n, 0]) * np.tan(f.tilt[n])
-    volume = f.length[n] * f.width[n]
-    mass = np.maximum(f.mass[n], 0.0)
-    m = mass if mass.sum() > 0.0 else volume
-    middle = np.array([np.average(ice_x, weights=volume), np.average(ice_z, weights=volume)])
-    angle = _angle(ice_x, ice_z, f.tilt[n], volume)
-    node = f.position[n][:, [0, 2]]  # where the lattice has the mass
-    centre = np.average(node, axis=0, weights=m)
-    velocity = np.average(f.velocity[n], axis=0, weights=m)
-    polygon, cuts, widths = _prism(f, h, n, ice_x, middle, angle)
-    arm = node - centre
-    spin = m * (arm[:, 0] * (f.velocity[n, 2] - velocity[2]) - arm[:, 1] * (f.velocity[n, 0] - velocity[0]))
-    own = m * h**2 / 12.0  # rotary inertia of a node (2.22)
-    inertia = float((m * (arm**2).sum(axis=1) + own).sum())
-    omega = float((spin - own * f.tilt_rate[n]).sum() / inertia)
-    return BlockBirth(
-        polygon=polygon,
-        cuts=cuts,
-        widths=widths,
-        angle=angle,
-        y=float(np.average(f.position[n, 1], weights=m)),
-        mass=float(mass.sum()),
-        centre=centre,
-        velocity=velocity,
-        omega=omega,
-        inertia=inertia,
-    )
-
-
-def _angle(x: Array, z: Array, tilt: Array, weight: Array) -> float:
-    """Slope of the line through the nodes, or of the single node, as an angle from x towards z."""
-    dx, dz = x - np.average(x, weights=weight), z - np.average(z, weights=weight)
-    spread = float((weight * dx * dx).sum())
-    if spread < 1e-9 * weight.sum():
-        return -float(np.average(tilt, weights=weight))
-    return float(np.arctan((weight * dx * dz).sum() / spread))
-
-
-def _prism(f: Fragment, h: float, n: IntArray, ice_x: Array, middle: Array, angle: float) -> tuple[Array, Array, Array]:
-    """Outline with the crushed edge cut off, and its widths row by row."""
-    rows, at = np.unique(f.row[n], return_inverse=True)  # front to rear
-    length = np.array([f.length[n][at == k].max() for k in range(len(rows))])
-    width = np.array([f.width[n][at == k].sum() for k in range(len(rows))])
-    axis = np.array([np.cos(angle), np.sin(angle)])
-    front = middle @ axis + float(((ice_x - middle[0]) / axis[0] + 0.5 * f.length[n]).max())
-    edges = front - np.concatenate(([0.0], np.cumsum(length)))
-    n0 = n[at == 0]
-    outline = _bevelled(edges[-1], front, h, float(f.cut[n0].max()), float(f.cut_tan[n0].max()), f.cut_face)
-    normal = np.array([-axis[1], axis[0]])
-    polygon = outline[:, :1] * axis + (middle @ normal + outline[:, 1:]) * normal
-    return polygon, edges[::-1].copy(), width[::-1].copy()
+def _birth(f: Fragment, h: float, n: IntArray, at: Array) -> PieceBirth:
+    """``at`` (k, 3): middles of the ice of nodes ``n``, front first, in the axes of the plate."""
+    length = f.length[n]
+    front = float((at[:, 0] + np.cumsum(length) - 0.5 * length).mean())
+    rear = front - float(length.sum())
+    first = n[0]
+    outline = _bevelled(rear, front, h, float(f.cut[first]), float(f.cut_tan[first]), f.cut_face)
+    return PieceBirth(outline, float(f.width[n].mean()), float(at[:, 1].mean()))
 
 
 def _bevelled(rear: float, front: float, h: float, cut: float, tan: float, face: float) -> Array:

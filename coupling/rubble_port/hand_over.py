@@ -1,74 +1,77 @@
-"""A fragment is handed over: its blocks go into the layer, and what arrives is set against what left."""
+"""A fragment is handed over: it becomes a plate, and what arrives is set against what left."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from coupling.interface import Array, Fragment, HandOver
-from coupling.rubble_port.births import BlockBirth, births, centre_of, momenta_of
-from rubble.block import Block, Slab, energy_of
+from coupling.rubble_port.births import Momenta, PieceBirth, births, frame_of
 from rubble.geometry import area_moments, contiguous
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Plate, Start, prism_at, quaternion_of
+from rubble.prism import Prism
 
-#: share of h^2 below which what is left of a trimmed block counts as crushed: a sliver as long as the ice is thick
+#: share of h^2 below which what is left of a trimmed piece counts as crushed: a sliver as long as the ice is thick
 #: would be thinner than a fifth of the overlap that contacts leave alone (0.5 % of h), so no contact would hold it
 SMALLEST = 1e-3
 
 
 class Arrivals:
-    """Puts blocks into a layer and counts the energy with which they are born."""
+    """Puts plates into a layer and counts the energy with which they are born."""
 
-    def __init__(self, physics: RubblePhysics, columns_per_section: int):
-        self._physics, self._columns = physics, columns_per_section
+    def __init__(self, physics: RubblePhysics):
+        self._physics = physics
         self.fragments = 0
-        self.born = np.zeros(2)  #: kinetic energy, and that of weight and water, of all blocks when they were born [J]
+        self.born = np.zeros(2)  #: kinetic energy, and that of weight and water, of all plates when they were born [J]
 
     def add(self, layer: RubbleLayer, fragment: Fragment) -> HandOver:
-        """Turns a fragment into blocks where and as it moves now."""
-        h = self._physics.thickness
-        about, mass = centre_of(fragment), float(fragment.mass.sum())
-        (left, scale), arrived, changed = momenta_of(fragment, h, about), np.zeros(4), np.zeros(4)
-        trimmed, count = mass, 0
-        for birth in births(fragment, h, self._columns):
-            block = self._place(layer, birth)
-            changed += birth.momenta(about)
-            if block is not None:
-                arrived, changed = arrived + _momenta(block, about), changed - _as_born(block, birth, about)
-                trimmed, count = trimmed - block.mass, count + 1
+        """Turns a fragment into a plate where and as it moves now."""
+        h, mass = self._physics.thickness, float(fragment.mass.sum())
         self.fragments += 1
-        error = np.abs(arrived + changed - left) / np.maximum(scale, 1e-9)
-        return HandOver(
-            blocks=count,
-            mass=mass,
-            trimmed=trimmed,
-            momentum_error=float(error[:3].max()),
-            angular_momentum_error=float(error[3]),
-            angular_momentum_change=float(abs(changed[3]) / max(scale[3], 1e-9)),
-        )
+        origin, axes = frame_of(fragment)
+        whole = list(births(fragment, h, origin, axes))
+        if not whole:
+            return HandOver(0, mass, mass, 0.0)
+        density = self._physics.rho_i
+        still = Start(origin, quaternion_of(axes), np.zeros(3), np.zeros(3))
+        plate = layer.try_plate([prism_at(b.polygon, b.y, b.width, density) for b in whole], still)
+        left = Momenta.of(fragment, h, plate.position)
+        start, error = _motion(plate, still, left)
+        rest = [(trimmed, b) for b in whole if (trimmed := self._trim(layer, b, origin, axes)) is not None]
+        if not rest:
+            return HandOver(0, mass, mass, error[0], error[1])
+        number = self._put(layer, [prism_at(t, b.y, b.width, density) for t, b in rest], start, plate.position)
+        born = layer.block(number)
+        self.born += layer.runner.parts_of(born)
+        return HandOver(1, mass, mass - born.mass, error[0], error[1])
 
-    def _place(self, layer: RubbleLayer, b: BlockBirth) -> Block | None:
-        """Puts one block into its section, outside the structure; None if nothing is left of it."""
-        key = layer.key_at(b.y)
-        polygon = layer.trim(b.polygon, key) if b.mass > 0.0 else np.empty((0, 2))
-        if len(polygon) < 3 or area_moments(contiguous(polygon)).area < SMALLEST * self._physics.thickness**2:
+    def _put(self, layer: RubbleLayer, prisms: list[tuple[Prism, Array]], start: Start, centre: Array) -> int:
+        """What is left of a plate moves on as the part of a rigid body that it is."""
+        kept = layer.try_plate(prisms, start).position
+        start = replace(start, velocity=start.velocity + np.cross(start.omega, kept - centre))
+        return layer.add_plate(prisms, start, fragment=self.fragments - 1)
+
+    def _trim(self, layer: RubbleLayer, b: PieceBirth, origin: Array, axes: Array) -> Array | None:
+        """What is left of a piece outside the structure, seen in the section that it stands in; None: nothing."""
+        shift = origin + b.y * axes[:, 1]
+        turn = axes[np.ix_([0, 2], [0, 2])]
+        placed = b.polygon @ turn.T + shift[[0, 2]]
+        kept = layer.trim(np.ascontiguousarray(placed), layer.key_at(float(shift[1])))
+        if len(kept) < 3 or area_moments(contiguous(kept)).area < SMALLEST * self._physics.thickness**2:
             return None
-        slab = Slab(polygon, b.cuts, b.widths, self._physics.rho_i, b.angle)
-        number = layer.add_block(key, slab, b.velocity.tolist(), b.omega, y=b.y, fragment=self.fragments, alone=False)
-        block = layer.block(number)
-        self.born += energy_of(block, self._physics)
-        return block
+        if len(kept) == len(placed) and np.abs(kept - placed).max() == 0.0:
+            return b.polygon
+        return np.ascontiguousarray(np.linalg.solve(turn, (kept - shift[[0, 2]]).T).T)
 
 
-def _momenta(block: Block, about: Array) -> Array:
-    """Momentum x, y, z of a block and angular momentum about a point in the x-z plane, as it moves (4,)."""
-    v = block.body.velocity
-    p = block.mass * np.array([v.x, block.v_y, v.y])
-    arm = np.array(block.body.position) - about
-    return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + block.prism.inertia * block.body.angular_velocity])
-
-
-def _as_born(block: Block, birth: BlockBirth, about: Array) -> Array:
-    """The same for the ice of a block, where it is, with the motion of its nodes (4,)."""
-    p, arm = block.mass * birth.velocity, np.array(block.body.position) - about
-    return np.array([*p, arm[0] * p[2] - arm[1] * p[0] + block.prism.inertia * birth.omega])
+def _motion(plate: Plate, still: Start, left: Momenta) -> tuple[Start, tuple[float, float]]:
+    """The motion with which a plate has the momenta that left, about its centre, and by how much it misses them."""
+    r = plate.rotation
+    spin = r @ plate.spin @ r.T
+    velocity, omega = left.linear / plate.mass, np.linalg.solve(spin, left.angular)
+    missed = np.abs(plate.mass * velocity - left.linear).sum(), np.abs(spin @ omega - left.angular).sum()
+    error = missed[0] / max(left.scale[0], 1e-9), missed[1] / max(left.scale[1], 1e-9)
+    return replace(still, velocity=velocity, omega=omega), (float(error[0]), float(error[1]))

@@ -11,11 +11,6 @@ from coupling.interface import SheetEdge, SimulationError
 from coupling.rubble_port.port import RubblePort
 from rubble.initial import Pile, rest, settle
 
-#: stiffness of the still sheet in a section [N/m]: the lift of the largest pile, some MN per section, moves it by less
-#: than the overlap that contacts leave alone (0.5 % of h), so the pile settles under a lid that is at rest
-LID = 1e9
-
-
 def front_sections(port: RubblePort) -> list[int]:
     """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
     layer = port.layer
@@ -37,12 +32,9 @@ def rest_again(port: RubblePort, edges: dict[int, SheetEdge]) -> Pile:
 
 
 def _hold(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
-    mass = port.physics.sheet_mass
-    still = {
-        k: replace(e, velocity=np.zeros_like(e.velocity), stiffness=(LID, LID), inertia=(mass, mass))
-        for k, e in edges.items()
-    }
-    port.set_sheet(still, port.forces_on_sheet())
+    """The sheet lies still and yields to nothing."""
+    still = {k: replace(e, velocity=np.zeros_like(e.velocity)) for k, e in edges.items()}
+    port.set_sheet(still, port.forces_on_sheet(), np.zeros((2, len(still), len(still))))
 
 
 def _settled(port: RubblePort, pile: Callable[[], Pile]) -> Pile:

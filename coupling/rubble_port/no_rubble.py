@@ -28,7 +28,7 @@ class NoRubble:
         """None."""
         return []
 
-    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """Nothing is there to meet the sheet."""
 
     def advance(self, window_ns: int) -> None:

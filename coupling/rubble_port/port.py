@@ -42,6 +42,7 @@ class Saved:
 
     layer: bytes  #: see `rubble.snapshot`
     edges: dict[int, SheetEdge]
+    compliance: Array  #: (2, k, k) of these edges [m/N]
     forces: SheetForces
     fragments: int
     born: Array  #: (2,) energy of all blocks when they were born [J]
@@ -57,7 +58,6 @@ class RubblePort:
         *,
         pitch: float,
         origin: float,
-        columns_per_section: int,
         domain: Domain,
         threads: int = 1,
     ):
@@ -76,8 +76,9 @@ class RubblePort:
         self.structure = structure
         self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
         self._edges: dict[int, SheetEdge] = {}
+        self._compliance = np.zeros((2, 0, 0))
         self._forces = SheetForces.none()
-        self._arrivals = Arrivals(physics, columns_per_section)
+        self._arrivals = Arrivals(physics)
 
     def add(self, fragment: Fragment) -> HandOver:
         """Turns a fragment into blocks where and as it moves now."""
@@ -85,22 +86,25 @@ class RubblePort:
 
     def sections_in_use(self) -> list[int]:
         """Sections that hold blocks or are next to one: those that must know where the sheet is."""
-        return sorted({k + side for k, s in self.layer.sections.items() if s.blocks for side in (-1, 0, 1)})
+        return sorted({k + side for k in self.layer.sections_in_use() for side in (-1, 0, 1)})
 
-    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
+    def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """The sheet's edges for the coming window; ``carried`` are the forces that it already answers to in them."""
         for key in set(self._edges) - set(edges):
             self.layer.remove_sheet(key)
-        self._edges = edges
+        self._edges, self._compliance = edges, compliance
         for key, e in edges.items():
-            applied, h = _on_edge(carried, e), self.physics.thickness
-            self.layer.set_sheet(key, SheetMotion(e.x, e.z, e.front, e.velocity, h, e.stiffness, e.inertia, applied))
+            motion = SheetMotion(e.x, e.z, e.front, e.velocity, self.physics.thickness, _on_edge(carried, e))
+            self.layer.set_sheet(key, motion)
 
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
-        crushed = self.layer.crushed.mass
+        crushed, n = self.layer.crushed.mass, round(window_ns / NS / self.physics.substep)
+        #: n steps under a constant force come to n (n + 1) / 2 dt^2 times it
+        yields = self._compliance * (2.0 / (self.physics.substep**2 * n * (n + 1)))
+        self.layer.set_yields(list(self._edges), yields)
         try:
-            self.layer.advance(round(window_ns / NS / self.physics.substep))
+            self.layer.advance(n)
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
         if self.layer.crushed.mass > crushed:
@@ -115,8 +119,7 @@ class RubblePort:
             return
         f = np.concatenate([self.layer.sheet_forces(key) for key in self._edges])
         on = np.flatnonzero(f.any(axis=1))
-        force = np.column_stack((f[:, 0], np.zeros(len(f)), f[:, 1]))
-        self._forces = SheetForces(np.concatenate(nodes)[on], force[on])
+        self._forces = SheetForces(np.concatenate(nodes)[on], f[on])
 
     def forces_on_sheet(self) -> SheetForces:
         """Mean forces over the last window."""
@@ -130,7 +133,7 @@ class RubblePort:
     def save(self) -> Restore:
         """The rubble between two windows; this run goes on from the copy as well (`rubble.snapshot`)."""
         a = self._arrivals
-        saved = Saved(snapshot.save(self.layer), self._edges, self._forces, a.fragments, a.born.copy())
+        saved = Saved(snapshot.save(self.layer), self._edges, self._compliance, self._forces, a.fragments, a.born.copy())
         restore = partial(self._restore, saved)
         restore()
         return restore
@@ -138,13 +141,13 @@ class RubblePort:
     def _restore(self, saved: Saved) -> None:
         """Sets the rubble back; a window from here has the same bits as the first one from here."""
         self.layer = snapshot.restore(saved.layer, self.layer)
-        self._edges, self._forces = saved.edges, saved.forces
+        self._edges, self._compliance, self._forces = saved.edges, saved.compliance, saved.forces
         self._arrivals.fragments, self._arrivals.born = saved.fragments, saved.born.copy()
 
     def blocks(self) -> BlockTable:
         """All blocks at the end of the window."""
         columns = self.layer.columns()
-        sliding = columns.pop("sliding")
+        sliding, _ = columns.pop("sliding"), columns.pop("spin")
         return BlockTable(phase=np.where(sliding, Phase.SLIDING, Phase.ROTATING).astype(np.int64), **columns)
 
     def load(self) -> Array:
@@ -156,8 +159,8 @@ class RubblePort:
     def budget(self) -> ForcePairs:
         """What carries the blocks, and minus their force on the sheet; see `coupling.budget`."""
         terms = {name: (float(f[0]), float(f[1])) for name, f in self.layer.budget.items()}
-        x, z = terms.pop("on_sheet")
-        return {**terms, "staggering": (-x, -z)}
+        x, _, z = (-self._forces.force.sum(axis=0)).tolist()
+        return {**terms, "staggering": (x, z)}
 
     @property
     def mass(self) -> float:

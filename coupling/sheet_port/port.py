@@ -116,7 +116,7 @@ class SheetPort:
         """The rubble's forces on all nodes."""
         n = self.sheet.grid.nodes
         force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
-        force_u[rubble.nodes, 0], force_q[rubble.nodes, 0] = rubble.force[:, 0], rubble.force[:, 2]
+        force_u[rubble.nodes], force_q[rubble.nodes, 0] = rubble.force[:, :2], rubble.force[:, 2]
         return NodeLoad(RUBBLE, force_u, force_q)
 
     def _others(self, t: float) -> list[NodeLoad]:
@@ -177,6 +177,10 @@ class SheetPort:
     def path(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
         """The same edges at the start of the last window, with their mean velocity over it: they end where they are."""
         return self.underside.edges(sections, self.motion.mean)
+
+    def compliance(self, sections: Sequence[int]) -> Array:
+        """How the edges in these sections yield to each other, see `SheetParticipant.compliance`."""
+        return self.underside.compliance(sections)
 
     def view(self) -> SheetView:
         """Positions, damage and utilisation for observers."""

@@ -9,11 +9,10 @@ import numpy as np
 from coupling.interface import Array, IntArray, SheetEdge, SimulationError
 from coupling.sheet_port.crushed_edge import CrushedEdge
 from coupling.sheet_port.motion import Motion
-from coupling.sheet_port.yielding import oscillator
+from coupling.sheet_port.yielding import Yielding
 from lattice.floe import Floe
 
 NodeMotion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity in x and z (n, 2) of nodes
-Yield = tuple[tuple[float, float], tuple[float, float]]  #: stiffness [N/m] and inertia [kg] in x and z
 
 #: length of sheet behind its edge that the rubble meets [m]: the campaign's 3000 m3 of initial rubble reach 25 m back.
 #: What lies farther behind would rise into open water
@@ -25,33 +24,29 @@ class Underside:
 
     def __init__(self, sheet: Floe, motion: Motion, edge: CrushedEdge, columns_per_section: int):
         self._sheet, self._motion, self._edge, self._columns = sheet, motion, edge, columns_per_section
-        self._yield_key: tuple[object, ...] = ()
-        self._yields: list[Yield] = []
+        self._yielding = Yielding(sheet)
 
     def edges(self, sections: Sequence[int], motion: NodeMotion) -> dict[int, SheetEdge]:
         """Edges where there is ice in front, with places and velocities by ``motion``."""
+        return {key: self._section(column, motion) for key, column in self._in_front(sections).items()}
+
+    def compliance(self, sections: Sequence[int]) -> Array:
+        """As `SheetParticipant.compliance`."""
+        columns = list(self._in_front(sections).values())
+        return self._yielding.matrix(self._edge.front[columns] * self._sheet.grid.ny + np.array(columns, np.int64))
+
+    def _in_front(self, sections: Sequence[int]) -> dict[int, int]:
+        """The column of each section that stands for it: the rearmost, so that no ice beside a new plate overlaps it."""
         columns = {}
         for key in sections:
             first = key * self._columns
             if 0 <= first < self._sheet.grid.ny:
                 front = self._edge.front[first : first + self._columns]
-                if front.min() >= 0:  # the rearmost: ice beside a new block must not overlap it
+                if front.min() >= 0:
                     columns[key] = first + int(np.argmin(front))
-        yields = self._yielding(list(columns.values())) if columns else []
-        return {key: self._section(column, y, motion) for (key, column), y in zip(columns.items(), yields, strict=True)}
+        return columns
 
-    def _yielding(self, columns: list[int]) -> list[Yield]:
-        """How the front nodes answer when all of them are pressed at once."""
-        s = self._sheet
-        nodes = self._edge.front[columns] * s.grid.ny + np.array(columns)
-        key = s.dt, nodes.tobytes(), s.live_cells.tobytes()
-        if key != self._yield_key:
-            k, m = oscillator(*s.answer(nodes), s.dt)
-            self._yields = [(tuple(a), tuple(b)) for a, b in zip(k.tolist(), m.tolist(), strict=True)]
-            self._yield_key = key
-        return self._yields
-
-    def _section(self, column: int, yields: Yield, motion: NodeMotion) -> SheetEdge:
+    def _section(self, column: int, motion: NodeMotion) -> SheetEdge:
         g, front = self._sheet.grid, int(self._edge.front[column])
         rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
         present = self._sheet.present[rows * g.ny + column]
@@ -65,8 +60,6 @@ class Underside:
             front=float(position[0, 0]) + float(self._edge.lead(rows[:1])[0]),
             velocity=velocity,
             nodes=nodes,
-            stiffness=yields[0],
-            inertia=yields[1],
         )
 
     def _check_apart(self, position: Array) -> None:

@@ -1,37 +1,49 @@
-"""How the sheet yields while the rubble presses on it, in the two numbers that a section of rubble can carry along.
+"""How the sheet yields while the rubble presses on it: the full compliance of its edge over all sections.
 
-Within a window the rubble meets the edge of the sheet as an oscillator. Under a constant force F it has after a time T
+Under a constant force on the front node of one section the front nodes of all sections have moved after a window: one
+column of a symmetric matrix (the lattice is linear between two failures). In the window the rubble answers with forces
+that are other than those that the lattice knows; by this matrix its edge goes where the lattice would.
 
-    x = F / k (1 - cos(theta)),   v = F / k (theta / T) sin(theta),   theta = T sqrt(k / m),
-
-and k, m are chosen so that x and v are those of the lattice after a window. The lattice is pressed in all sections at
-once: what all sections do together is right, and what one does alone is softer than it is. That is the safe side. With
-G the compliance of the edges and P = diag(G 1) what the rubble takes for it, an error of the force of one window
-comes back in the next as (1 - P^-1 G) times itself, and the eigenvalues of P^-1 G lie between 0 and 1 (Gershgorin).
+A column costs as much as a window of the lattice. The field that it is read from is kept for its node; where pieces
+have left, the nodes that are in front now have columns of their own. All are found anew when the window is another one
+or when so many cells have failed that the sheet is another one.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from coupling.interface import Array
+from coupling.interface import Array, IntArray
+from lattice.contact import NoContact
+from lattice.floe import Floe
+from lattice.state import State
 
-SHORTEST = 1e-15  #: displacement that counts as none [m/N]
+OTHER_SHEET = 0.02  #: share of the cells that fail before the compliance is found anew
 
 
-def oscillator(x: Array, v: Array, window: float) -> tuple[Array, Array]:
-    """Stiffness k [N/m] and mass m [kg] for displacements x [m/N] and velocities v [m/(N s)] after a window [s].
+class Yielding:
+    """Keeps the answers of the sheet to one newton on a node, in x and in z."""
 
-    theta cot(theta / 2) = v T / x lies between 2 (a free mass) and 0 (a motion shorter than the window, which ends at
-    rest); beyond these ends the end is taken.
-    """
-    x = np.maximum(x, SHORTEST)
-    ratio = np.clip(v * window / x, 0.0, 2.0 - 1e-6)
-    low, high = np.zeros_like(x), np.full_like(x, np.pi)
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        above = middle / np.tan(0.5 * middle) > ratio
-        low, high = np.where(above, middle, low), np.where(above, high, middle)
-    theta = 0.5 * (low + high)
-    k = (1.0 - np.cos(theta)) / x
-    return k, k * (window / theta) ** 2
+    def __init__(self, sheet: Floe) -> None:
+        self._sheet = sheet
+        self._window, self._live = 0.0, 0
+        self._fields: dict[int, Array] = {}  #: (nodes, 2) displacement of all nodes in x and z [m/N]
+
+    def matrix(self, nodes: IntArray) -> Array:
+        """Displacement of nodes in x, and in z, after a window under one newton on each of them (2, k, k) [m/N]."""
+        s = self._sheet
+        live = int(s.live_cells.sum())
+        if s.dt != self._window or abs(live - self._live) > OTHER_SHEET * len(s.live_cells):
+            self._window, self._live, self._fields = s.dt, live, {}
+        fields = np.array([self._field(int(n))[nodes] for n in nodes]).reshape(-1, len(nodes), 2)
+        one_way = np.moveaxis(fields, 2, 0)
+        return 0.5 * (one_way + np.swapaxes(one_way, 1, 2))
+
+    def _field(self, node: int) -> Array:
+        if node not in self._fields:
+            s, n = self._sheet, self._sheet.grid.nodes
+            force_u, force_q = np.zeros((n, 2)), np.zeros((n, 3))
+            force_u[node, 0] = force_q[node, 0] = 1.0
+            end = s.engine.step(0.0, s.dt, State.rest(n), force_u, force_q, NoContact()).state
+            self._fields[node] = np.column_stack((end.u[:, 0], end.q[:, 0]))
+        return self._fields[node]
