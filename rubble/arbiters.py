@@ -15,7 +15,7 @@ from numba import carray  # type: ignore[attr-defined]  # numba exports it witho
 
 from rubble.arrays import record
 from rubble.compiled import callback
-from rubble.pointers import integer, number, pointer, set_integer
+from rubble.pointers import number, pointer, set_integer
 
 #: pairs counted in a sub-step, pairs that fit into the list, address of the list
 LIST = record(integers=("count", "room", "address"))

@@ -71,8 +71,8 @@ def outside(plates: Plates, hulls: Hulls, forces: Array, dt: float, momenta: Arr
 def kick(plates: Plates, hulls: Hulls, thrust: Array, forces: Array, pressure: Array, dt: float, books: Record) -> None:
     """Velocities after the forces of a sub-step, and what it books.
 
-    ``forces`` (n, 3, 6) from `water.plate_forces`, used up; ``pressure`` (n, 6) is that of the sub-step before, nan if there was
-    none, and becomes the one of this; ``thrust`` (n, 6) beside the weight.
+    ``forces`` (n, 3, 6) from `water.plate_forces`, used up; ``pressure`` (n, 6) is that of the sub-step before, nan if
+    there was none, and becomes the one of this; ``thrust`` (n, 6) beside the weight.
     """
     still = np.empty((1, 3, 6))  # mean of weight, thrust and pressure; growth of the pressure; thrust alone
     for i in range(plates.moved.shape[0] - 1):

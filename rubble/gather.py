@@ -88,6 +88,8 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
             a = slot_of(integer(arbiter + layout.body_a), slots.address, slots.slot)
             b = slot_of(integer(arbiter + layout.body_b), slots.address, slots.slot)
             points = short(arbiter + layout.points)
+            if real(arbiter + layout.n) == 0.0 and real(arbiter + layout.n + 8) == 0.0:
+                continue  # outlines that just fall together have no direction in which they could push
             if a == UNKNOWN or b == UNKNOWN:
                 return -2
             if count + points > rows.point.shape[0]:
@@ -95,9 +97,10 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
             start, contact = count, integer(arbiter + layout.contacts)
             for p in range(points):
                 _row(scene, rows, count, i, arbiter, contact + p * layout.size, a, b)
+                set_arms(rows, count, scene.plates, scene.edges)
                 count += 1
-            _law(scene, rows, start, points)
-            _first_guess(rows, start, points, old, integer(arbiter + layout.data), stamp)
+            _law(scene, rows, start, count)
+            _first_guess(rows, start, count, old, integer(arbiter + layout.data), stamp)
             set_integer(arbiter + layout.data, (stamp << 24) | (start + 1))
     return count
 
@@ -133,7 +136,21 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
     set_way(rows.way[c, 1], -nz, 0.0, nx)
     set_way(rows.way[c, 2], uy * nx, -uz * nz - ux * nx, uy * nz)
     point.depth = p * depth
-    set_arms(rows, c, scene.plates, scene.edges)
+
+
+@compiled(nogil=True)
+def _face_of(scene: Scene, s: int, px: float, pz: float) -> int:
+    """Edge of a slice whose outward normal is (px, pz); -1 if it has none."""
+    r = scene.plates.rotation[scene.slices.plate[s]]
+    h = max(np.hypot(r[0, 0], r[2, 0]), 1e-12)
+    cos, sin = r[0, 0] / h, r[2, 0] / h
+    ux, uz = cos * px + sin * pz, cos * pz - sin * px
+    best, found = SAME_FACE, -1
+    for k in range(scene.slices.sides[s]):
+        like = ux * scene.slices.side[s, k, 0] + uz * scene.slices.side[s, k, 1]
+        if like > best:
+            best, found = like, k
+    return found
 
 
 @compiled(nogil=True)
@@ -141,7 +158,7 @@ def _bearing(sections: Sections, section: int, at: Record) -> float:
     """n_y / n_x of the structure at a point in a section, see `cut`."""
     faces = sections.faces[sections.offset[section] : sections.offset[section + 1]]
     face = faces[nearest(faces, at.x, at.z)]
-    ratio: float = face.constant
+    ratio = float(face.constant)
     if face.radial != 0.0:
         x = at.x if abs(at.x) * STEEPEST > abs(at.y) else np.copysign(max(abs(at.y), 1e-9) / STEEPEST, at.x)
         ratio += face.radial * at.y / x
@@ -154,18 +171,10 @@ def _lean(scene: Scene, a: int, b: int, nx: float, nz: float) -> float:
     y = across = 0.0
     for side in range(2):
         s, sign = (a, 1.0) if side == 0 else (b, -1.0)
-        r = scene.plates.rotation[scene.slices.plate[s]]
-        h = max(np.hypot(r[0, 0], r[2, 0]), 1e-12)
-        cos, sin = r[0, 0] / h, r[2, 0] / h
-        px, pz = sign * (cos * nx + sin * nz), sign * (cos * nz - sin * nx)
-        best, found = SAME_FACE, -1
-        for k in range(scene.slices.count[s]):
-            like = px * scene.slices.side[s, k, 0] + pz * scene.slices.side[s, k, 1]
-            if like > best:
-                best, found = like, k
+        found = _face_of(scene, s, sign * nx, sign * nz)
         if found >= 0:
             f = scene.slices.face[s, found]
-            fx, fy, fz = times(r, f[0], f[1], f[2])
+            fx, fy, fz = times(scene.plates.rotation[scene.slices.plate[s]], f[0], f[1], f[2])
             y += sign * fy
             across += np.hypot(fx, fz)
     if across == 0.0:
@@ -174,28 +183,30 @@ def _lean(scene: Scene, a: int, b: int, nx: float, nz: float) -> float:
 
 
 @compiled(nogil=True)
-def _law(scene: Scene, rows: Rows, start: int, points: int) -> None:
+def _law(scene: Scene, rows: Rows, start: int, end: int) -> None:
     """What the contact of a pair carries before it crushes, shared by its points."""
-    first, length = rows.point[start], 0.0
-    if points > 1:
-        length = np.hypot(first.x - rows.point[start + 1].x, first.z - rows.point[start + 1].z)
+    first, last = rows.point[start], rows.point[end - 1]
+    length = np.hypot(first.x - last.x, first.z - last.z)
+    for c in range(start, end):  # a corner of 90 degrees is as wide as it is deep on both sides
+        length = max(length, 2.0 * rows.point[c].depth)
     width = min(scene.pitch, scene.widths[first.slot_b])
     if first.slot_a >= 0:
         width = min(width, scene.widths[first.slot_a])
-    for c in range(start, start + points):
-        rows.point[c].most = scene.strength * width * max(length, scene.shortest) / points
+    for c in range(start, end):
+        rows.point[c].most = scene.strength * width * max(length, scene.shortest) / (end - start)
 
 
 @compiled(nogil=True)
-def _first_guess(rows: Rows, start: int, points: int, old: Rows, kept: int, stamp: int) -> None:
+def _first_guess(rows: Rows, start: int, end: int, old: Rows, kept: int, stamp: int) -> None:
     """Impulses of the same points one sub-step ago."""
     first = (kept & 0xFFFFFF) - 1 if kept >> 24 == stamp - 1 else -1
-    for c in range(start, start + points):
+    for c in range(start, end):
         own, at = rows.point[c], -1
         if first >= 0:
             for o in range(first, min(first + 2, old.point.shape[0])):
                 was = old.point[o]
                 if was.slot_a == own.slot_a and was.slot_b == own.slot_b and was.feature == own.feature:
                     at = o
+        own.met = old.point[at].met if at >= 0 else (0.0 if own.kind == STRUCTURE else np.inf)
         for d in range(3):
             rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from rubble.arrays import Array
-from rubble.piece import Slab
 from rubble.domain import Domain
 from rubble.energy import mechanical_energy
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
+from rubble.piece import Slab
 
 POROSITY, SLOPE = 0.3, np.radians(35.0)  #: of the heap that the blocks are spread for; the result may differ
 CALM = 1e-6  #: kinetic over potential energy of a settled pile

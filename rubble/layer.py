@@ -20,11 +20,11 @@ from rubble.arrays import Array
 from rubble.cut import Solids, open_water
 from rubble.domain import Domain
 from rubble.geometry import overlap_area
+from rubble.joints import no_joints
 from rubble.lost import Lost
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate, Slab, Start, one_piece
 from rubble.prism import Prism
-from rubble.rig import no_joints
 from rubble.section import Section
 from rubble.sections import SectionTable
 from rubble.sheet import SheetBody, SheetMotion
@@ -49,7 +49,7 @@ class RubbleLayer:
             raise ValueError(f"section pitch is {pitch:g} m; a section needs a width > 0")
         self.physics, self.pitch, self.origin = physics, pitch, origin
         self.domain, self.threads = domain or Domain(), threads
-        self.store = Store(physics)
+        self.store = Store(physics, pitch)
         self.table_of_sections = SectionTable(physics, pitch, origin, solids)
         self.runner = Runner(physics)
         self.joints = no_joints()
@@ -124,9 +124,7 @@ class RubbleLayer:
         """The plate that `add_plate` would make, without adding it."""
         return self._make(-1, prisms, start, None)
 
-    def _make(
-        self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: bool | None
-    ) -> Plate:
+    def _make(self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: bool | None) -> Plate:
         full = self.physics.backfill == "full" if flooded is None else flooded
         return self.store.make(fragment, prisms, start, float(full))
 

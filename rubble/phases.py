@@ -2,45 +2,51 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
-from rubble.arrays import record
+from rubble.arrays import Array, Record, Records, record
 from rubble.cut import distance_to, nearest
-
-if TYPE_CHECKING:
-    from rubble.sections import SectionTable
-    from rubble.store import Store
+from rubble.piece import Plate
+from rubble.section import Section
+from rubble.slices import Slices
 
 #: of a plate: distance at which a slope counts [m], direction of its long axis [rad], period of that direction [rad]
 AXIS = record("reach", "direction", "period")
-#: whether its long axis has once aligned with a slope, and whether it slides; 0 or 1
-STATUS = record(integers=("aligned", "sliding"))
 SHEET = 4  #: column of `store.ON_PLATE`: normal impulse on the sheet
 
 
-def update_phases(store: Store, sections: SectionTable, tolerance: float) -> None:
-    """Bring the phases of the plates up to date after a window; ``tolerance`` [rad]."""
-    tables, planes = store.tables, list(sections.by_key.values())
-    for i, plate in enumerate(store.list):
+def update_phases(
+    plates: Sequence[Plate],
+    axes: Records,
+    sums: Array,
+    slices: Slices,
+    sections: Sequence[Section],
+    tolerance: float,
+) -> None:
+    """Bring the phases of the plates up to date after a window.
+
+    ``axes`` (n,) AXIS; ``sums`` (n, 9) of the window, `store.ON_PLATE`; ``tolerance`` [rad].
+    """
+    for i, plate in enumerate(plates):
         if plate.sliding:
             continue
         if not plate.aligned:
-            own = np.flatnonzero(sections.slices.plate == i)
-            x, y, z = plate.position
-            for s in own.tolist():
-                slopes = planes[sections.slices.section[s]].slopes
-                if len(slopes) == 0:
-                    continue
-                face = slopes[nearest(slopes, x, z)]
-                axis = tables.axes[i]
-                if distance_to(face, x, z) > axis["reach"]:
-                    continue
-                slope = np.arctan2(face["z1"] - face["z0"], face["x1"] - face["x0"])
-                turn = axis["direction"] + plate.angle - slope
-                if abs((turn + axis["period"] / 2) % axis["period"] - axis["period"] / 2) <= tolerance:
-                    plate.aligned = True
-                    break
-        if plate.aligned and tables.sums[i, SHEET] <= 0.0:
+            own = slices.section[slices.plate == i]
+            plate.aligned = any(_aligned(plate, axes[i], sections[s].slopes, tolerance) for s in own.tolist())
+        if plate.aligned and sums[i, SHEET] <= 0.0:
             plate.sliding = True
+
+
+def _aligned(plate: Plate, axis: Record, slopes: Records, tolerance: float) -> bool:
+    """Whether a plate lies along the slope of a section that is nearest to it, if one is near."""
+    if len(slopes) == 0:
+        return False
+    x, _, z = plate.position.tolist()
+    face = slopes[nearest(slopes, x, z)]
+    if distance_to(face, x, z) > axis["reach"]:
+        return False
+    slope = np.arctan2(face["z1"] - face["z0"], face["x1"] - face["x0"])
+    turn, period = axis["direction"] + plate.angle - slope, axis["period"]
+    return bool(abs((turn + period / 2) % period - period / 2) <= tolerance)

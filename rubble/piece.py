@@ -63,7 +63,8 @@ class Plate:
     @property
     def position(self) -> Array:
         """Of the centre of mass (3,); a view [m]."""
-        return self.rows.position[self.row]
+        at: Array = self.rows.position[self.row]
+        return at
 
     @property
     def velocity(self) -> Array:
@@ -78,7 +79,8 @@ class Plate:
     @property
     def rotation(self) -> Array:
         """(3, 3) from its axes to the fixed ones."""
-        return self.rows.rotation[self.row]
+        axes: Array = self.rows.rotation[self.row]
+        return axes
 
     @property
     def momentum(self) -> Array:
@@ -95,6 +97,12 @@ class Plate:
         """Mean extent along its y axis [m]."""
         area = sum(p.prism.area for p in self.pieces) / len(self.pieces)
         return sum(p.prism.area * p.prism.width for p in self.pieces) / area
+
+    @property
+    def extent(self) -> float:
+        """Along its y axis, over all pieces [m]."""
+        low = min(float(p.centre[1]) - 0.5 * p.prism.width for p in self.pieces)
+        return max(float(p.centre[1]) + 0.5 * p.prism.width for p in self.pieces) - low
 
     @property
     def angle(self) -> float:
@@ -116,7 +124,7 @@ def turned(angle: float) -> Array:
 
 
 def quaternion_of(axes: Array) -> Array:
-    """Quaternion (4,) of the turn that brings x, y, z to the columns of ``axes`` (3, 3), turned by less than 180 deg."""
+    """Quaternion (4,) of the turn that brings x, y, z to the columns of ``axes`` (3, 3), by less than 180 degrees."""
     w = 0.5 * np.sqrt(max(1.0 + float(np.trace(axes)), 1e-12))
     d = np.array([axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]])
     found = np.array([w, *(d / (4.0 * w))])

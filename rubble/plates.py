@@ -34,7 +34,7 @@ class Plates(NamedTuple):
     flooded: Array  #: (n + 1,) part of its head of water that the top carries
 
     @property
-    def count(self) -> int:
+    def number(self) -> int:
         """How many plates there are."""
         return len(self.moved) - 1
 
@@ -49,9 +49,18 @@ def empty(count: int) -> Plates:
     n = count + 1
     one = np.tile(np.eye(3), (n, 1, 1))
     still = np.tile(np.array([1.0, 0.0, 0.0, 0.0]), (n, 1))
-    block = [np.zeros((n, 3, 3)) for _ in range(3)]
     return Plates(
-        np.zeros((n, 3)), still, np.zeros(n, MOTION), np.zeros(n, MOTION), one, np.ones(n), np.zeros(n), *block, np.ones(n)
+        position=np.zeros((n, 3)),
+        quaternion=still,
+        motion=np.zeros(n, MOTION),
+        shift=np.zeros(n, MOTION),
+        rotation=one,
+        moved=np.ones(n),
+        inverse_mass=np.zeros(n),
+        inertia=np.zeros((n, 3, 3)),
+        inverse=np.zeros((n, 3, 3)),
+        world=np.zeros((n, 3, 3)),
+        flooded=np.ones(n),
     )
 
 
@@ -119,7 +128,7 @@ def turn(plates: Plates, i: int, dt: float) -> float:
     q /= np.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
     orient(plates, i)
     v.a, v.b, v.c = times(plates.world[i], lx, ly, lz)
-    return 0.5 * (v.a * lx + v.b * ly + v.c * lz - before)
+    return float(0.5 * (v.a * lx + v.b * ly + v.c * lz - before))
 
 
 @compiled(nogil=True)
@@ -151,7 +160,7 @@ def momenta(plates: Plates, mass: Array, spin: Array) -> Array:
 
     ``spin`` is in the plates' axes. [N s], [N m s]
     """
-    n = plates.count
+    n = plates.number
     p = mass[:, None] * plates.velocity[:n, :3]
     r = plates.rotation[:n]
     own = np.einsum("nab,nbc,ndc,nd->na", r, spin, r, plates.velocity[:n, 3:])

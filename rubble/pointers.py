@@ -10,7 +10,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
-from pymunk._chipmunk_cffi import ffi, lib
+from pymunk._chipmunk_cffi import ffi
 
 
 class ArbiterLayout(NamedTuple):

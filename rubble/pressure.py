@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-
 from rubble.arrays import Record, record
 from rubble.compiled import compiled
 
@@ -42,7 +41,7 @@ def wet_part(edge: Record, z: float, s: float, c: float) -> Wet:
     ax, az, bx, bz = edge.x0, edge.z0, edge.x1, edge.z1
     da, db = z + s * ax + c * az, z + s * bx + c * bz
     if da >= 0.0 and db >= 0.0:
-        return Wet(ax, az, ax, az, 0.0, ax, az, 0.0, 0.0)
+        return Wet(ax=ax, az=az, bx=ax, bz=az, length=0.0, x=ax, z=az, depth=0.0, tilt=0.0)
     if da > 0.0:
         f = da / (da - db)
         ax, az, da = ax + f * (bx - ax), az + f * (bz - az), 0.0
@@ -50,7 +49,8 @@ def wet_part(edge: Record, z: float, s: float, c: float) -> Wet:
         f = da / (da - db)
         bx, bz, db = ax + f * (bx - ax), az + f * (bz - az), 0.0
     length = (bx - ax) * edge.t_x + (bz - az) * edge.t_z
-    return Wet(ax, az, bx, bz, length, 0.5 * (ax + bx), 0.5 * (az + bz), -0.5 * (da + db), (da - db) / 12.0)
+    x, z, depth = 0.5 * (ax + bx), 0.5 * (az + bz), -0.5 * (da + db)
+    return Wet(ax=ax, az=az, bx=bx, bz=bz, length=length, x=x, z=z, depth=depth, tilt=(da - db) / 12.0)
 
 
 @compiled(nogil=True, inline="always")

@@ -21,18 +21,24 @@ HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 
 #: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
-#: and the speed that it goes for [m/s]; plates a and b; section whose sheet is end a, else -1; kind, see above; numbers of
-#: the slices a and b, and which point of theirs it is
+#: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left [m]; plates a and b;
+#: section whose sheet is end a, else -1; kind, see above; numbers of the slices a and b, and which point of theirs it is
 POINT = record(
-    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed"),
+    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met"),
     integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature"),
 )
-#: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit of
-#: relative speed moves [kg]; impulse [N s]; speed of b against a that it goes for [m/s]
+#: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit
+#: of relative speed moves [kg]; impulse [N s]; speed of b against a that it goes for [m/s]
 WAY = record(
     *("x", "y", "z", "a_x", "a_y", "a_z", "b_x", "b_y", "b_z"),
     *("ta_x", "ta_y", "ta_z", "tb_x", "tb_y", "tb_z", "mass", "impulse", "target"),
 )
+
+#: Pieces of ice that two planes do not both see may be found deep in each other when one of them comes into a plane.
+#: They have met in between. To push them apart would lift ice by as much as they overlap; they may stay as deep as they
+#: have met and get no deeper. Where ice crushes, the overlap is crushed ice and nothing pushes it out either. What is
+#: left of such an overlap goes in this time [s]
+GIVES_WAY = 20.0
 
 
 class Rows(NamedTuple):
@@ -67,6 +73,12 @@ class Edges(NamedTuple):
     carried: Array  #: (e, 2) these forces [N]
     yields: Array  #: (2, e, e) velocity in x, and in z, of each for an impulse on each [1/kg]
     body: IntArray  #: (e,) address of its body in pymunk; 0 where there is no sheet
+
+
+def still_edges(count: int) -> Edges:
+    """Edges of so many sections that have no sheet."""
+    place, motion, shift, driven, carried = (np.zeros((count, 2)) for _ in range(5))
+    return Edges(place, motion, shift, driven, carried, np.zeros((2, count, count)), np.zeros(count, np.int64))
 
 
 @compiled(nogil=True)
@@ -134,4 +146,7 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
             mu = rate_dependent(np.sqrt(v * v + w * w))
         point.mu = mu
         n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
-        point.shift_speed = surface.bias * max(point.depth - surface.slop, 0.0) / dt
+        over = max(point.depth - surface.slop, 0.0)
+        crushing = n.impulse >= point.most * (1.0 - 1e-9)  # in the sub-step before
+        point.met = over if crushing else min(point.met, over) * (1.0 - dt / GIVES_WAY)
+        point.shift_speed = surface.bias * (over - point.met) / dt

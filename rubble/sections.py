@@ -24,7 +24,7 @@ from rubble.store import Store
 
 SET_CORNERS = address(ffi.addressof(lib, "cpPolyShapeSetVertsRaw"))
 SAME = 1e-9  #: corners that have moved less are the same, in thicknesses
-SLIVER = 1e-9  #: area of a slice, in thicknesses squared, below which it is none
+SLIVER = 1e-4  #: area of a slice, in thicknesses squared, below which it is none
 KEYS = 1 << 20  #: more sections than there are
 LAYOUTS = arbiter_layout(), body_layout()
 
@@ -70,7 +70,7 @@ class SectionTable:
         keep = np.flatnonzero(areas > SLIVER * h * h)
         names = tables.numbers[piece] * KEYS + key + KEYS // 2
         order = keep[np.argsort(names[keep], kind="stable")]
-        return self._enter(Slices(*(column[order] for column in new)), names[order], store)
+        return self._enter(_chosen(new, order), names[order], store)
 
     def _enter(self, new: Slices, names: IntArray, store: Store) -> IntArray | None:
         """Slices come, go, or take on their new outline."""
@@ -81,17 +81,21 @@ class SectionTable:
             for name in np.setdiff1d(old, names).tolist():
                 self._made.pop(name).remove()
             for i in np.flatnonzero(~np.isin(names, old)).tolist():
-                group, corners = store.list[new.plate[i]].id + 1, new.corners[i, : new.count[i]]
+                group, corners = store.list[new.plate[i]].id + 1, new.corners[i, : new.sides[i]]
                 self._made[int(names[i])] = Slice(sections[new.section[i]], group, corners)
             numbers = np.searchsorted(names, old)
-            numbers[(numbers == len(names)) | (names[np.minimum(numbers, len(names) - 1)] != old)] = -1 if len(old) else 0
+            numbers[(numbers == len(names)) | (names[np.minimum(numbers, len(names) - 1)] != old)] = (
+                -1 if len(old) else 0
+            )
         made = [self._made[n] for n in names.tolist()] if not same or self.changed else []
         if made or not same:
             self._shapes = np.array([address(s.shape._shape) for s in made], np.int64)
             self._bodies = np.array([address(s.body._body) for s in made], np.int64)
         if len(names):
             before = self.slices if same else _rows(len(names))
-            _set_outlines(new, before, self._shapes, SAME * self.physics.thickness, (SET_CORNERS, new.corners.ctypes.data))
+            _set_outlines(
+                new, before, self._shapes, SAME * self.physics.thickness, (SET_CORNERS, new.corners.ctypes.data)
+            )
         new.body[:] = self._bodies if len(names) else []
         self.slices, self._names = new, names
         if not same or self.changed:
@@ -106,7 +110,9 @@ class SectionTable:
         sheets = [s.sheet.address for s in sections if s.sheet is not None]
         bodies = np.concatenate([np.array(still + sheets, np.int64), self.slices.body])
         kinds = [STRUCTURE_SLOT] * len(still) + [SHEET_SLOT] * len(sheets)
-        self.slots: Slots = slot_table(bodies, np.concatenate([np.array(kinds, np.int64), np.arange(len(self.slices.body))]))
+        self.slots: Slots = slot_table(
+            bodies, np.concatenate([np.array(kinds, np.int64), np.arange(len(self.slices.body))])
+        )
         faces, offset = faces_of(sections)
         self.for_kernels = Sections(
             np.array([s.y for s in sections]),
@@ -123,7 +129,6 @@ class SectionTable:
         for section in self.by_key.values():
             if 2 * section.pairs.count > section.pairs.capacity:
                 section.pairs.reserve(4 * section.pairs.capacity)
-
 
     def __getstate__(self) -> dict[str, Any]:
         gone = ("_made", "_names", "slices", "slots", "for_kernels", "_shapes", "_bodies", "solids")
@@ -143,20 +148,27 @@ def _pairs(pieces: Pieces) -> tuple[IntArray, IntArray]:
     return piece, first[piece] + np.arange(len(piece)) - start
 
 
+def _chosen(slices: Slices, order: IntArray) -> Slices:
+    """Some slices, in an order."""
+    return Slices(**{name: column[order] for name, column in slices._asdict().items()})
+
+
 def _rows(
     count: int, piece: IntArray | None = None, plate: IntArray | None = None, section: IntArray | None = None
 ) -> Slices:
-    none = np.zeros(count, np.int64)
-    given = [none.copy() if a is None else a for a in (piece, plate, section)]
+    """Slices without outlines."""
+    given = [np.zeros(count, np.int64) if a is None else a for a in (piece, plate, section)]
     return Slices(
-        *given,
-        none.copy(),
-        np.zeros(count),
-        np.zeros((count, 3)),
-        none.copy(),
-        np.zeros((count, CORNERS, 2)),
-        np.zeros((count, CORNERS, 2)),
-        np.zeros((count, CORNERS, 3)),
+        piece=given[0],
+        plate=given[1],
+        section=given[2],
+        body=np.zeros(count, np.int64),
+        y=np.zeros(count),
+        anchor=np.zeros((count, 3)),
+        sides=np.zeros(count, np.int64),
+        corners=np.zeros((count, CORNERS, 2)),
+        side=np.zeros((count, CORNERS, 2)),
+        face=np.zeros((count, CORNERS, 3)),
     )
 
 
@@ -167,21 +179,21 @@ def _cut_all(plates: Plates, pieces: Pieces, slices: Slices, planes: Array, area
         i, k = slices.piece[s], slices.plate[s]
         y, r = planes[slices.section[s]], plates.rotation[k]
         cut_piece(plates, pieces, slices, s, y)
-        if slices.count[s] < 3 and pieces.range[i, 0] == pieces.range[i, 1]:
+        if slices.sides[s] < 3 and pieces.range[i, 0] == pieces.range[i, 1]:
             cut_piece(plates, pieces, slices, s, plates.position[k, 1] + r[1, 1] * pieces.y[i])
         c = slices.corners[s]
-        for a in range(slices.count[s]):
-            b = (a + 1) % slices.count[s]
+        for a in range(slices.sides[s]):
+            b = (a + 1) % slices.sides[s]
             areas[s] += 0.5 * (c[a, 0] * c[b, 1] - c[b, 0] * c[a, 1])
 
 
 @compiled(nogil=True)
 def _set_outlines(new: Slices, old: Slices, shapes: IntArray, same: float, at: tuple[int, int]) -> None:
-    """Give pymunk's shapes their corners where these have moved; ``at``: addresses of its function and of the corners."""
+    """Give pymunk's shapes the corners that have moved; ``at``: addresses of its function and of the corners."""
     for s in range(shapes.shape[0]):
-        moved = new.count[s] != old.count[s]
-        for c in range(new.count[s]):
+        moved = new.sides[s] != old.sides[s]
+        for c in range(new.sides[s]):
             for d in range(2):
                 moved = moved or abs(new.corners[s, c, d] - old.corners[s, c, d]) > same
         if moved:
-            set_corners(at[0], shapes[s], new.count[s], at[1] + 16 * CORNERS * s)
+            set_corners(at[0], shapes[s], new.sides[s], at[1] + 16 * CORNERS * s)

@@ -61,7 +61,7 @@ class SheetBody:
     def enter(self, space: pymunk.Space) -> None:
         """Stand in a space, with the shapes that it has."""
         self.space, self.body = space, pymunk.Body(1.0, float("inf"))
-        self.body.position = tuple(self.place.tolist())
+        self.body.position = float(self.place[0]), float(self.place[1])
         self.shapes: list[pymunk.Poly] = []
         space.add(self.body)
         self._replace_shapes(self._corners)

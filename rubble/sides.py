@@ -1,8 +1,10 @@
 """Sides: plates in neighbouring sections meet across them.
 
-A section sees what its plane cuts. Two plates that stand side by side, one cut by this plane and the other by the next,
-meet with their sides: where their slices overlap, seen along y, the one must end before the other begins. The place of
-a side follows from the plate as it is turned; the contact acts in the middle of the common part of the two slices.
+A section sees what its plane cuts. Two plates of which one is cut by this plane and the other by the next meet between
+the planes, if they overlap along y and as seen along y. They meet where the overlap is least: with their sides, the
+normal that of the side, or with their fronts, the normal in the plane. The place of a side follows from the plate as
+it is turned; the contact acts in the middle of the common part of the two slices. Within a window its two points move
+with their plates.
 """
 
 from __future__ import annotations
@@ -14,26 +16,32 @@ import numpy as np
 from rubble.arrays import Array, IntArray, Record
 from rubble.compiled import compiled
 from rubble.gather import Scene
-from rubble.plates import times
+from rubble.geometry import area_moments, intersection
+from rubble.plates import times, turn_back
 from rubble.rows import ICE, Rows, set_arms, set_way
+from rubble.slices import Pieces, end_along_y
 
 SIDE = -1  #: marks a row of two sides
-LEAST = 1e-3  #: common part of two slices below which they pass each other, over the pitch squared
+NEAR = 0.1  #: gap that may close in a window, over the pitch
 
 
 class Sides(NamedTuple):
     """Pairs of slices in neighbouring sections that may meet in this window."""
 
-    pair: IntArray  #: (k, 2) slices, the first in the section with the smaller number
-    at: Array  #: (k, 3) middle of their common part, x, z [m], and its area [m2]
-    gap: Array  #: (k,) from the side of the first to that of the second along y at the start [m]
+    pair: IntArray  #: (k, 2) slices, the first in the section with the smaller number; ascending
     normal: Array  #: (k, 3) from the first to the second
-    arm: Array  #: (k, 2, 3) the point in the axes of the plates, from their centres [m]
+    arm: Array  #: (k, 2, 3) the point, on the first and on the second, in the axes of the plates [m]
+    area: Array  #: (k,) of the contact [m2]
+
+
+def side_room(count: int) -> Sides:
+    """Room for so many pairs."""
+    return Sides(np.zeros((count, 2), np.int64), np.zeros((count, 3)), np.zeros((count, 2, 3)), np.zeros(count))
 
 
 def no_sides() -> Sides:
     """None."""
-    return Sides(np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 2, 3)))
+    return side_room(0)
 
 
 @compiled(nogil=True)
@@ -63,13 +71,14 @@ def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, bef
         point.a, point.b, point.edge, point.kind = i, j, -1, ICE
         point.slot_a, point.slot_b, point.feature = a, b, SIDE
         point.x, point.y, point.z = 0.5 * (x + u), 0.5 * (y + v), 0.5 * (z + w)
-        point.depth, point.most = depth, scene.strength * sides.at[k, 2]
+        point.depth, point.most = depth, scene.strength * sides.area[k]
         _directions(rows, c, n)
         set_arms(rows, c, plates, scene.edges)
         while last < before and _earlier(old.point[last], a, b):
             last += 1
         same = last < before and old.point[last].feature == SIDE
         same = same and old.point[last].slot_a == a and old.point[last].slot_b == b
+        point.met = old.point[last].met if same else np.inf
         for d in range(3):
             rows.way[c, d].impulse = old.way[last, d].impulse if same else 0.0
         c += 1
@@ -84,9 +93,127 @@ def _earlier(p: Record, a: int, b: int) -> bool:
 
 @compiled(nogil=True)
 def _directions(rows: Rows, c: int, n: Array) -> None:
-    """n, and two directions across it: the first lies flat."""
-    length = np.sqrt(n[1] * n[1] + n[0] * n[0])
-    tx, ty = n[1] / length, -n[0] / length
+    """n, and two directions across it: the first lies flat where n leads out of the plane, else in the plane."""
+    tx, ty, tz = (n[1], -n[0], 0.0) if abs(n[1]) > 0.5 else (-n[2], 0.0, n[0])
+    length = np.sqrt(tx * tx + ty * ty + tz * tz)
+    tx, ty, tz = tx / length, ty / length, tz / length
     set_way(rows.way[c, 0], n[0], n[1], n[2])
-    set_way(rows.way[c, 1], tx, ty, 0.0)
-    set_way(rows.way[c, 2], -n[2] * ty, n[2] * tx, n[0] * ty - n[1] * tx)
+    set_way(rows.way[c, 1], tx, ty, tz)
+    set_way(rows.way[c, 2], n[1] * tz - n[2] * ty, n[2] * tx - n[0] * tz, n[0] * ty - n[1] * tx)
+
+
+@compiled(nogil=True)
+def _outline(scene: Scene, s: int) -> Array:
+    """Corners of a slice in the plane (m, 2) [m]."""
+    r, b, p = scene.plates.rotation[scene.slices.plate[s]], scene.slices.anchor[s], scene.plates.position
+    h, k = max(np.hypot(r[0, 0], r[2, 0]), 1e-12), scene.slices.plate[s]
+    cos, sin = r[0, 0] / h, r[2, 0] / h
+    ox, _, oz = times(r, b[0], b[1], b[2])
+    out = np.empty((scene.slices.sides[s], 2))
+    for c in range(scene.slices.sides[s]):
+        x, z = scene.slices.corners[s, c, 0], scene.slices.corners[s, c, 1]
+        out[c, 0], out[c, 1] = p[k, 0] + ox + cos * x - sin * z, p[k, 2] + oz + sin * x + cos * z
+    return out
+
+
+@compiled(nogil=True)
+def _apart(a: Array, b: Array) -> tuple[float, float, float]:
+    """Gap between two convex outlines along the edge normal on which it is largest, and that normal, from a to b."""
+    best, nx, nz = -np.inf, 1.0, 0.0
+    for side in range(2):
+        own, other, sign = (a, b, 1.0) if side == 0 else (b, a, -1.0)
+        for i in range(own.shape[0]):
+            j = (i + 1) % own.shape[0]
+            tx, tz = own[j, 0] - own[i, 0], own[j, 1] - own[i, 1]
+            length = np.hypot(tx, tz)
+            if length <= 0.0:
+                continue
+            ux, uz, least = tz / length, -tx / length, np.inf
+            for k in range(other.shape[0]):
+                least = min(least, ux * (other[k, 0] - own[i, 0]) + uz * (other[k, 1] - own[i, 1]))
+            if least > best:
+                best, nx, nz = least, sign * ux, sign * uz
+    return best, nx, nz
+
+
+@compiled(nogil=True)
+def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, sides: Sides) -> int:
+    """Pairs of slices that may meet between two sections; returns how many, more than there is room for if so.
+
+    ``order`` lists the slices section by section, ascending, from ``first[i]`` to ``first[i + 1]`` for section i.
+    """
+    slices, near, found = scene.slices, NEAR * scene.pitch, 0
+    outlines = [_outline(scene, s) for s in range(slices.piece.shape[0])]
+    for a in range(slices.piece.shape[0]):
+        i = slices.section[a] + 1
+        if i + 1 >= first.shape[0] or scene.sections.y[i] - scene.sections.y[i - 1] > 1.5 * scene.pitch:
+            continue
+        for o in range(first[i], first[i + 1]):
+            b = order[o]
+            if slices.plate[a] == slices.plate[b]:
+                continue
+            gap, nx, nz = _apart(outlines[a], outlines[b])
+            if gap > near or _both_cut(pieces, slices.piece[a], slices.piece[b]):
+                continue
+            room, both = found < sides.area.shape[0], (outlines[a], outlines[b])
+            if not room or _meet(scene, pieces, (a, b), both, (gap, nx, nz), sides, found):
+                found += 1
+    return found
+
+
+@compiled(nogil=True)
+def _both_cut(pieces: Pieces, a: int, b: int) -> bool:
+    """Whether one plane cuts both: their contact is found in it."""
+    cut: bool = pieces.range[a, 1] >= pieces.range[b, 0]
+    return cut
+
+
+@compiled(nogil=True)
+def _meet(
+    scene: Scene,
+    pieces: Pieces,
+    pair: tuple[int, int],
+    outlines: tuple[Array, Array],
+    apart: tuple[float, float, float],
+    sides: Sides,
+    k: int,
+) -> bool:
+    """The contact of two slices between their planes as pair k; says whether there may be one."""
+    (a, b), (gap, nx, nz), near = pair, apart, NEAR * scene.pitch
+    shift = max(gap, 0.0) + 0.5 * near
+    moved = outlines[1].copy()
+    moved[:, 0] -= shift * nx if gap > -near else 0.0
+    moved[:, 1] -= shift * nz if gap > -near else 0.0
+    common = area_moments(intersection(outlines[0], moved))
+    if common.area <= 0.0:
+        return False
+    x, z = common.x, common.z
+    end, ax, ay, az = end_along_y(scene.plates, scene.slices, pieces, a, x, z, 1.0)
+    start, bx, by, bz = end_along_y(scene.plates, scene.slices, pieces, b, x, z, -1.0)
+    beside = start - end
+    if beside > near or (beside > 0.0 and gap > 0.0):
+        return False
+    n = sides.normal[k]
+    sides.pair[k, 0], sides.pair[k, 1] = a, b
+    if beside >= gap:
+        n[0], n[1], n[2] = ax - bx, ay - by, az - bz
+        length = np.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+        n[0], n[1], n[2] = n[0] / length, n[1] / length, n[2] / length
+        sides.area[k] = common.area
+        _arm(scene, a, sides.arm[k, 0], x, end, z)
+        _arm(scene, b, sides.arm[k, 1], x, start, z)
+    else:
+        n[0], n[1], n[2] = nx, 0.0, nz
+        sides.area[k] = -beside * np.sqrt(common.area)
+        y = 0.5 * (start + end)
+        _arm(scene, a, sides.arm[k, 0], x - 0.5 * gap * nx, y, z - 0.5 * gap * nz)
+        _arm(scene, b, sides.arm[k, 1], x + 0.5 * gap * nx, y, z + 0.5 * gap * nz)
+    return True
+
+
+@compiled(nogil=True)
+def _arm(scene: Scene, s: int, out: Array, x: float, y: float, z: float) -> None:
+    """A point in the axes of the plate of a slice."""
+    k = scene.slices.plate[s]
+    p = scene.plates.position
+    out[0], out[1], out[2] = turn_back(scene.plates.rotation[k], x - p[k, 0], y - p[k, 1], z - p[k, 2])

@@ -19,7 +19,7 @@ import numpy as np
 
 from rubble.arrays import Array, IntArray
 from rubble.compiled import compiled
-from rubble.plates import Plates, turn_back
+from rubble.plates import Plates, times, turn_back
 
 CORNERS = 16  #: most corners of a slice
 EDGE_ON = 1e-6  #: |e_y| of a plate that stands across the sections: below it a cut counts as this oblique
@@ -45,7 +45,7 @@ class Slices(NamedTuple):
     body: IntArray  #: (s,) address of its body in pymunk
     y: Array  #: (s,) plane of the cut [m]
     anchor: Array  #: (s, 3) its origin, in the plate's axes [m]
-    count: IntArray  #: (s,) how many corners
+    sides: IntArray  #: (s,) how many corners
     corners: Array  #: (s, CORNERS, 2) relative to its origin, along axes that turn with the plate [m]
     side: Array  #: (s, CORNERS, 2) outward normal of the edge from each corner, in these axes
     face: Array  #: (s, CORNERS, 3) outward normal of the face that makes this edge, in the plate's axes
@@ -106,7 +106,7 @@ def cut_piece(plates: Plates, pieces: Pieces, slices: Slices, s: int, y: float) 
         limit = 0.5 * pieces.width[i] + sign * (pieces.y[i] - d * ey)
         if abs(ay) > 1e-12 or abs(cy) > 1e-12:
             m = _clip(at, edge, m, sign * ay, sign * cy, limit, n + side)
-    moved = 0.0 if m == slices.count[s] else np.inf
+    moved = 0.0 if m == slices.sides[s] else np.inf
     for c in range(m):
         moved = max(moved, abs(at[c, 0] - slices.corners[s, c, 0]), abs(at[c, 1] - slices.corners[s, c, 1]))
         slices.corners[s, c, 0], slices.corners[s, c, 1] = at[c, 0], at[c, 1]
@@ -115,7 +115,7 @@ def cut_piece(plates: Plates, pieces: Pieces, slices: Slices, s: int, y: float) 
         length = max(np.hypot(tx, tz), 1e-300)
         slices.side[s, c, 0], slices.side[s, c, 1] = tz / length, -tx / length
         _face(pieces, first, n, edge[c], slices.face[s, c])
-    slices.count[s] = m
+    slices.sides[s] = m
     return moved
 
 
@@ -151,3 +151,30 @@ def _clip(at: Array, edge: IntArray, m: int, nx: float, nz: float, limit: float,
     for i in range(k):
         at[i, 0], at[i, 1], edge[i] = out[i, 0], out[i, 1], own[i]
     return k
+
+
+@compiled(nogil=True)
+def end_along_y(
+    plates: Plates, slices: Slices, pieces: Pieces, s: int, x: float, z: float, sign: float
+) -> tuple[float, float, float, float]:
+    """Where the line along y through (x, z) leaves the piece of a slice, going to +y or -y, and the normal there."""
+    i, k = slices.piece[s], slices.plate[s]
+    r, p = plates.rotation[k], plates.position
+    bx, by, bz = turn_back(r, x - p[k, 0], slices.y[s] - p[k, 1], z - p[k, 2])
+    ex, ey, ez = sign * r[1, 0], sign * r[1, 1], sign * r[1, 2]
+    way, fx, fy, fz = np.inf, 0.0, sign, 0.0
+    for side in range(2):
+        n = 1.0 if side == 0 else -1.0
+        if n * ey > 1e-9 and (0.5 * pieces.width[i] - n * (by - pieces.y[i])) / (n * ey) < way:
+            way, fx, fy, fz = (0.5 * pieces.width[i] - n * (by - pieces.y[i])) / (n * ey), 0.0, n, 0.0
+    first, last = pieces.offset[i], pieces.offset[i + 1]
+    for c in range(first, last):
+        a, b = pieces.corners[c], pieces.corners[c + 1 if c + 1 < last else first]
+        tx, tz = b[0] - a[0], b[1] - a[1]
+        length = np.hypot(tx, tz)
+        nx, nz = tz / length, -tx / length
+        rate = nx * ex + nz * ez
+        if rate > 1e-9 and (nx * (a[0] - bx) + nz * (a[1] - bz)) / rate < way:
+            way, fx, fy, fz = (nx * (a[0] - bx) + nz * (a[1] - bz)) / rate, nx, 0.0, nz
+    fx, fy, fz = times(r, fx, fy, fz)
+    return slices.y[s] + sign * max(way, 0.0), fx, fy, fz

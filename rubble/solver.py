@@ -67,7 +67,7 @@ def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
 def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
     """Take out overlap; ``edge``: how fast the sheet's edge recedes along n. Returns the impulse."""
     new = max(point.shift + n.mass * (point.shift_speed - speed(n, a, b) + edge), 0.0)
-    j = new - point.shift
+    j = float(new - point.shift)
     if j != 0.0:
         point.shift = new
         _push(n, a, b, ma, mb, j)
@@ -80,7 +80,7 @@ def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float
     new = n.impulse + n.mass * (n.target - speed(n, a, b) + edge)
     if point.mu >= 0.0:
         new = min(max(new, 0.0), point.most)
-    j = new - n.impulse
+    j = float(new - n.impulse)
     if j != 0.0:
         n.impulse = new
         _push(n, a, b, ma, mb, j)

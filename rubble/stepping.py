@@ -10,8 +10,8 @@ from rubble.arrays import Array, IntArray, Records
 from rubble.books import book_contacts, kick, outside, sum_contacts
 from rubble.compiled import compiled
 from rubble.gather import Scene, find_pairs, gather
+from rubble.joints import Joints, joint_rows
 from rubble.plates import Plates, move_all
-from rubble.rig import Joints, joint_rows
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
 from rubble.solver import push_edge, solve
@@ -44,7 +44,7 @@ class Sums(NamedTuple):
     water: Records  #: (1,) WATER_IMPULSE
     pressure: Array  #: (n, 6) of the last sub-step [N, N m]
     momenta: Array  #: (3, 6) that plates receive, see `books`
-    count: IntArray  #: (2,) rows of the last sub-step; its number
+    counted: IntArray  #: (2,) rows of the last sub-step; its number
 
 
 @compiled(nogil=True)
@@ -62,16 +62,16 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
             for d in range(2):
                 edges.place[e, d] += dt * (edges.motion[e, d] + edges.shift[e, d])
         find_pairs(scene)
-        stamp = sums.count[1] + 1
+        stamp = sums.counted[1] + 1
         rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
         found = gather(scene, rows, old, stamp)
         if found < 0:
-            return found
-        contacts = side_rows(scene, window.sides, rows, old, found, sums.count[0])
-        found = joint_rows(scene, window.joints, rows, old, contacts, sums.count[0]) if contacts >= 0 else -1
+            return int(found)
+        contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0])
+        found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
         if found < 0:
             return NO_ROOM
-        sums.count[0], sums.count[1] = found, stamp
+        sums.counted[0], sums.counted[1] = found, stamp
         set_laws(rows, contacts, plates, edges, window.surface, dt)
         plate_forces(plates, window.hulls, window.water, forces, lowest)
         _sum_water(forces, dt, sums.water)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, Records, filled, rows
-from rubble.phases import AXIS, STATUS
+from rubble.arrays import Array, IntArray, Records, filled, rows
+from rubble.phases import AXIS
 from rubble.physics import RubblePhysics
 from rubble.piece import Piece, Plate, Start, centre_of, moved_mass, volume_of
 from rubble.plates import Plates, empty, orient_all
@@ -17,6 +17,9 @@ from rubble.prism import Prism
 from rubble.slices import Pieces
 from rubble.water import Hulls
 
+#: A plate narrower than this many sections is seen by one plane at a time. What rolls or yaws it is pressure at two
+#: places along y, which one plane does not tell apart: it turns about y alone, as if neighbours held the rest
+NARROW = 1.5
 #: of a plate over a window: impulse on the structure x, y, z [N s]; normal impulses on other ice, on the sheet; normal
 #: impulse on the structure, and weighted with x, y and z of the point [N s m]
 ON_PLATE = ("structure_x", "structure_y", "structure_z", "ice", "sheet", "push", "at_x", "at_y", "at_z")
@@ -26,21 +29,20 @@ class Tables(NamedTuple):
     """What follows from the plates, beside their motion."""
 
     pieces: Pieces
-    numbers: Array  #: (p,) numbers of the pieces
+    numbers: IntArray  #: (p,) numbers of the pieces
     hulls: Hulls
     mass: Array  #: (n,) true mass [kg]
     spin: Array  #: (n, 3, 3) true inertia [kg m2]
     thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
     axes: Records  #: (n,) AXIS
-    status: Records  #: (n,) STATUS
     sums: Array  #: (n, 9) ON_PLATE over the window
 
 
 class Store:
     """Adds and takes plates; `plates` and `tables` are valid after `lay_out`."""
 
-    def __init__(self, physics: RubblePhysics) -> None:
-        self.physics = physics
+    def __init__(self, physics: RubblePhysics, pitch: float) -> None:
+        self.physics, self.narrow = physics, NARROW * pitch
         self.list: list[Plate] = []
         self.plates = empty(0)
         self._next, self._next_piece = 0, 0
@@ -57,7 +59,7 @@ class Store:
         own.position[0] = start.position + own.rotation[0] @ centre
         own.velocity[0] = *start.velocity, *start.omega
         plate = Plate(self._next, fragment, pieces, mass, spin, own, 0)
-        weigh(plate, self.physics)
+        weigh(plate, self.physics, self.narrow)
         self._next, self._next_piece = self._next + 1, self._next_piece + len(pieces)
         return plate
 
@@ -92,12 +94,17 @@ class Store:
         self.tables = _tables(self.list, self.physics)
 
 
-def weigh(plate: Plate, physics: RubblePhysics) -> None:
-    """Mass and inertia of a plate into its row."""
+def weigh(plate: Plate, physics: RubblePhysics, narrow: float) -> None:
+    """Mass and inertia of a plate into its row; one that is no wider than ``narrow`` turns about its y axis alone."""
     moved, inertia = moved_mass(plate, physics, volume_of(plate.pieces))
-    rows_, i = plate.rows, plate.row
-    rows_.moved[i], rows_.inverse_mass[i] = moved, 1.0 / moved
-    rows_.inertia[i], rows_.inverse[i] = inertia, np.linalg.inv(inertia)
+    own, i = plate.rows, plate.row
+    own.moved[i], own.inverse_mass[i], own.inertia[i] = moved, 1.0 / moved, inertia
+    if plate.extent > narrow or not np.isfinite(narrow):
+        own.inverse[i] = np.linalg.inv(inertia)
+    else:
+        own.inertia[i] = own.inverse[i] = 0.0
+        own.inertia[i, 1, 1], own.inverse[i, 1, 1] = inertia[1, 1], 1.0 / inertia[1, 1]
+        own.motion["a"][i] = own.motion["c"][i] = 0.0
 
 
 def _copy(source: Plates, i: int, target: Plates, k: int) -> None:
@@ -111,8 +118,6 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
     y = np.array([p.centre[1] for _, p in pieces], np.float64)
     width = np.array([p.prism.width for _, p in pieces], np.float64)
     corners = [p.prism.polygon + p.centre[::2] for _, p in pieces]
-    status = np.zeros(len(plates), STATUS)
-    status["aligned"], status["sliding"] = [p.aligned for p in plates], [p.sliding for p in plates]
     return Tables(
         pieces=Pieces(
             owner,
@@ -128,13 +133,12 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
         spin=np.array([p.spin for p in plates]).reshape(-1, 3, 3),
         thrust=np.array([p.thrust for p in plates]).reshape(-1, 6),
         axes=_axes(plates, physics.thickness),
-        status=status,
         sums=np.zeros((len(plates), len(ON_PLATE))),
     )
 
 
 def _hulls(
-    plates: Sequence[Plate], pieces: Sequence[tuple[int, Piece]], owner: Array, y: Array, width: Array, g: float
+    plates: Sequence[Plate], pieces: Sequence[tuple[int, Piece]], owner: IntArray, y: Array, width: Array, g: float
 ) -> Hulls:
     edges = [_moved(p.prism.edges, p.centre) for _, p in pieces]
     alone = np.array([len(plates[i].pieces) for i, _ in pieces], np.float64)

@@ -45,10 +45,11 @@ def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict
 def loads(store: Store, window: float) -> Array:
     """Mean force of each plate on the structure over a window [s], (n, 3) [N]."""
     impulse = store.tables.sums[:, :3]
-    return impulse / window if window else np.zeros_like(impulse)
+    return np.asarray(impulse / window if window else np.zeros_like(impulse))
 
 
 def contact_centres(store: Store) -> Array:
     """Mean place of each plate's contacts with the structure (n, 3), nan without contact [m]."""
     push, at = store.tables.sums[:, 5:6], store.tables.sums[:, 6:9]
-    return np.divide(at, push, out=np.full(at.shape, np.nan), where=push > 0.0)
+    centres: Array = np.divide(at, push, out=np.full(at.shape, np.nan), where=push > 0.0)
+    return centres

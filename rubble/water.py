@@ -144,7 +144,7 @@ def _add_at(out: Array, r: Array, at: tuple[float, float, float], x: float, y: f
 
 @compiled(nogil=True)
 def _piece_force(i: int, plates: Plates, hulls: Hulls, water: Water, out: Array) -> float:
-    """Adds the water's force on piece i to ``out``, see `plate_forces`; returns the height of its top's lowest point."""
+    """Adds the water's force on piece i to ``out``, see `plate_forces`; returns the lowest height of its top."""
     k, y = hulls.plate[i], hulls.y[i]
     r, v, share = plates.rotation[k], plates.motion[k], plates.flooded[k]
     ux, uy, uz = turn_back(r, v.x - water.current_x, v.y - water.current_y, v.z)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -10,15 +10,15 @@ from rubble.arrays import Array, IntArray
 from rubble.books import BOOKS
 from rubble.friction import coefficient
 from rubble.gather import Scene
+from rubble.joints import Joints
 from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
 from rubble.plates import kinetic
-from rubble.rig import Joints
-from rubble.rows import Edges, Rows, Surface, room
+from rubble.rows import Edges, Rows, Surface, room, still_edges
 from rubble.sections import SectionTable
 from rubble.sheet import NODE
-from rubble.sides import no_sides
+from rubble.sides import Sides, find_sides, no_sides, side_room
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
@@ -36,8 +36,9 @@ class Runner:
         self.momenta = np.zeros((3, 6))  #: that plates received since the start, see `books`
         self.planar = False  #: plates move in their x-z plane only, while initial rubble settles
         self.window = 0.0  #: length of the last one [s]
-        self._rows: tuple[Rows, Rows] = room(256), room(256)
-        self._count = np.zeros(2, np.int64)
+        self._rows: tuple[Rows, Rows] = room(4096), room(4096)
+        self._counted = np.zeros(2, np.int64)
+        self._most_sides = 256
         self._pressure: dict[int, Array] = {}
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
@@ -45,7 +46,7 @@ class Runner:
     @property
     def contacts(self) -> int:
         """Points of contact in the last sub-step."""
-        return int(self._count[0])
+        return int(self._counted[0])
 
     def advance(self, store: Store, sections: SectionTable, joints: Joints, n: int) -> None:
         """Do ``n`` sub-steps."""
@@ -58,13 +59,24 @@ class Runner:
         nodes, offset = _nodes(sections)
         edges = self._edges(sections)
         pressure = self._known_pressure(store)
-        sums = Sums(tables.sums, nodes, offset, self.books, self.water_impulse, pressure, self.momenta, self._count)
+        sums = Sums(tables.sums, nodes, offset, self.books, self.water_impulse, pressure, self.momenta, self._counted)
         before, sheet = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
-        done, window = 0, Window(
-            int(self.physics.iterations), self._surface(), self.water, tables.hulls, tables.thrust, no_sides(), joints, self.planar
+        scene = self._scene(store, sections, edges)
+        sides = no_sides() if self.planar else self._sides(scene, store)
+        done, window = (
+            0,
+            Window(
+                iterations=int(self.physics.iterations),
+                surface=self._surface(),
+                water=self.water,
+                hulls=tables.hulls,
+                thrust=tables.thrust,
+                sides=sides,
+                joints=joints,
+                planar=self.planar,
+            ),
         )
         while done < n:
-            scene = self._scene(store, sections, edges)
             step = advance_substeps(n - done, window, scene, *self._rows, sums)
             if step < 0:
                 raise RuntimeError(f"rubble: {WRONG[step]} in a sub-step; take out blocks that overlap")
@@ -79,12 +91,16 @@ class Runner:
 
     def _scene(self, store: Store, sections: SectionTable, edges: Edges) -> Scene:
         p, slices = self.physics, sections.slices
-        width = store.tables.pieces.width[slices.piece]
+        width, known = store.tables.pieces.width[slices.piece], sections.for_kernels
+        if self.planar:  # faces of the structure look along the drift
+            faces = known.faces.copy()
+            faces["constant"] = faces["radial"] = 0.0
+            known = known._replace(faces=faces)
         strength, shortest = p.contact_strength * p.substep, 2.0 * p.slop
         return Scene(
             plates=store.plates,
             slices=slices,
-            sections=sections.for_kernels,
+            sections=known,
             slots=sections.slots,
             edges=edges,
             dt=p.substep,
@@ -94,6 +110,18 @@ class Runner:
             shortest=shortest,
         )
 
+    def _sides(self, scene: Scene, store: Store) -> Sides:
+        """Pairs of slices that may meet between two sections."""
+        section = scene.slices.section
+        order = np.argsort(section, kind="stable")
+        first = np.searchsorted(section[order], np.arange(len(scene.sections.y) + 1))
+        while True:
+            sides = side_room(self._most_sides)
+            found = find_sides(scene, store.tables.pieces, first, order, sides)
+            if found <= self._most_sides:
+                return Sides(sides.pair[:found], sides.normal[:found], sides.arm[:found], sides.area[:found])
+            self._most_sides = 2 * found
+
     def _surface(self) -> Surface:
         p = self.physics
         bias = 1.0 - BIAS**p.substep
@@ -102,7 +130,7 @@ class Runner:
     def _edges(self, sections: SectionTable) -> Edges:
         """The sheet's edges in all sections, still where there is no sheet."""
         n, (known, yields) = len(sections.by_key), self.yields
-        edges = Edges(*(np.zeros((n, 2)) for _ in range(5)), np.zeros((2, n, n)), np.zeros(n, np.int64))
+        edges = still_edges(n)
         at = np.array([known.get(k, -1) for k in sections.by_key], np.int64)
         on = np.flatnonzero(at >= 0)
         edges.yields[:, on[:, None], on[None, :]] = yields[:, at[on][:, None], at[on][None, :]]
@@ -125,7 +153,7 @@ class Runner:
                 old[on] = np.where(new[old[on]] >= 0, new[old[on]], -5)
 
     def _make_room(self) -> None:
-        if 2 * int(self._count[0]) > len(self._rows[0].point):
+        if 2 * int(self._counted[0]) > len(self._rows[0].point):
             larger = 4 * len(self._rows[0].point)
             self._rows = _grown(self._rows[0], larger), _grown(self._rows[1], larger)
 
@@ -147,7 +175,8 @@ class Runner:
         if not finite.all():
             number = store.list[int(np.argmin(finite))].id
             raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
-        update_phases(store, sections, self.physics.align_tolerance)
+        tables, planes = store.tables, list(sections.by_key.values())
+        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.physics.align_tolerance)
 
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""
@@ -161,7 +190,7 @@ class Runner:
 
     def parts_of(self, plate: Plate) -> tuple[float, float]:
         """The same apart."""
-        alone = Store(self.physics)
+        alone = Store(self.physics, np.inf)
         held = plate.rows, plate.row
         alone.add(plate)
         moving, resting = self.energies(alone)

@@ -52,6 +52,9 @@ class MassOnSpring:
     def path(self, sections):
         return {0: edge(self._before[0], (self.state[0] - self._before[0]) / self._window)}
 
+    def compliance(self, sections):
+        return np.zeros((2, len(sections), len(sections)))
+
     def view(self):
         return None
 
@@ -71,7 +74,7 @@ class MassBehindSpring:
     def sections_in_use(self):
         return [0]
 
-    def set_sheet(self, edges, carried):
+    def set_sheet(self, edges, carried, compliance):
         self._edge = edges[0].x[0], edges[0].velocity[0, 0]
 
     def advance(self, window_ns):
@@ -96,4 +99,4 @@ class MassBehindSpring:
 
 def edge(x, v):
     """An edge of one node."""
-    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), np.array([0]), (1.0, 1.0), (1.0, 1.0))
+    return SheetEdge(np.array([x]), np.zeros(1), x, np.array([[v, 0.0]]), np.array([0]))

@@ -76,9 +76,9 @@ print(energy_terms(layer)["stepping_loss"])
 
 
 def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it(tmp_path):
-    """`stepping.advance_substeps`, unchanged, calls `losses.kick`: m (g dt)^2 / 2 per sub-step, then three times it."""
+    """`stepping.advance_substeps`, unchanged, calls `books.kick`: m (g dt)^2 / 2 per sub-step, then three times it."""
     shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
-    losses = tmp_path / "rubble" / "losses.py"
+    books = tmp_path / "rubble" / "books.py"
 
     def stepping() -> float:
         done = subprocess.run([sys.executable, "-c", FALL], cwd=tmp_path, capture_output=True, text=True, check=True)
@@ -86,9 +86,9 @@ def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it
 
     gain = 10 * (9.81 * 0.005) ** 2 / 2 * 900.0
     assert stepping() == pytest.approx(-gain, rel=1e-9)
-    text = losses.read_text()
-    assert "0.5 * jz * dz" in text
-    losses.write_text(text.replace("0.5 * jz * dz", "1.5 * jz * dz"))
+    text = books.read_text()
+    assert "+ fz * fz)" in text
+    books.write_text(text.replace("+ fz * fz)", "+ 3.0 * fz * fz)"))
     assert stepping() == pytest.approx(-3.0 * gain, rel=1e-9)
 
 

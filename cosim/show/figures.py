@@ -24,7 +24,7 @@ ENERGY = {
     "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),
     "friction on structure": (
         "#7fb3dc",
-        ("contact_friction_loss", "friction_structure_loss", "side_friction_structure_loss"),
+        ("contact_friction_loss", "friction_structure_loss"),
     ),
     "sheet: damping, scheme": ("#9a9fa6", ("damping_loss", "scheme_loss")),
     "fracture, hand-over": (
@@ -41,14 +41,11 @@ ENERGY = {
             "impact_sheet_loss",
             "friction_ice_loss",
             "friction_sheet_loss",
-            "side_friction_ice_loss",
-            "side_impact_loss",
         ),
     ),
-    "water": ("#3a9b5c", ("drag_loss", "side_drag_loss", "dry_top_loss")),
+    "water": ("#3a9b5c", ("drag_loss", "dry_top_loss")),
     "ice that left": ("#c9c24f", ("crushed_energy_loss", "cleared_energy_loss")),
     "interface, step, overlap": ("#d45087", ("interface_loss", "stepping_loss", "correction_loss")),
-    "side push of the sections": ("#b03a2e", ("side_push_loss",)),
 }
 ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
 

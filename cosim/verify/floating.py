@@ -9,9 +9,9 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, near
 from rubble.arrays import Array
-from rubble.piece import Slab
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 PARAMETERS: dict[str, Any] = {
     "length": 10.0,

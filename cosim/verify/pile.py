@@ -8,12 +8,12 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, at_most, near, value
 from rubble.arrays import Array
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.energy import mechanical_energy
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 PARAMETERS: dict[str, Any] = {
     "blocks": 24,

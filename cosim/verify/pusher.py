@@ -8,10 +8,10 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, near, value
 from rubble.arrays import Array
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 from rubble.rig import thrust
 
 PARAMETERS: dict[str, Any] = {

@@ -9,12 +9,12 @@ import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, at_most, near
 from coupling.structure import plane_slope
-from rubble.piece import Slab
 from rubble.cut import plane as plane_cut
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 PARAMETERS: dict[str, Any] = {
     "mu": [0.1, 0.35],

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, Quantity, near
-from rubble.piece import Slab
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 PARAMETERS: dict[str, Any] = {
     "length": 10.0,

@@ -17,11 +17,11 @@ import numpy as np
 from cosim.verify.case import CaseResult, Figure, Quantity, near, value
 from coupling.structure import plane_slope
 from rubble.arrays import Array
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 from rubble.rig import Hinge
 
 PARAMETERS: dict[str, Any] = {

@@ -71,7 +71,7 @@ def _motion(plate: Plate, still: Start, left: Momenta) -> tuple[Start, tuple[flo
     """The motion with which a plate has the momenta that left, about its centre, and by how much it misses them."""
     r = plate.rotation
     spin = r @ plate.spin @ r.T
-    velocity, omega = left.linear / plate.mass, np.linalg.solve(spin, left.angular)
+    velocity, omega = left.linear / plate.mass, np.asarray(np.linalg.solve(spin, left.angular), np.float64)
     missed = np.abs(plate.mass * velocity - left.linear).sum(), np.abs(spin @ omega - left.angular).sum()
     error = missed[0] / max(left.scale[0], 1e-9), missed[1] / max(left.scale[1], 1e-9)
     return replace(still, velocity=velocity, omega=omega), (float(error[0]), float(error[1]))

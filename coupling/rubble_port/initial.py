@@ -11,6 +11,7 @@ from coupling.interface import SheetEdge, SimulationError
 from coupling.rubble_port.port import RubblePort
 from rubble.initial import Pile, rest, settle
 
+
 def front_sections(port: RubblePort) -> list[int]:
     """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
     layer = port.layer

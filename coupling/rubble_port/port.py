@@ -133,7 +133,9 @@ class RubblePort:
     def save(self) -> Restore:
         """The rubble between two windows; this run goes on from the copy as well (`rubble.snapshot`)."""
         a = self._arrivals
-        saved = Saved(snapshot.save(self.layer), self._edges, self._compliance, self._forces, a.fragments, a.born.copy())
+        saved = Saved(
+            snapshot.save(self.layer), self._edges, self._compliance, self._forces, a.fragments, a.born.copy()
+        )
         restore = partial(self._restore, saved)
         restore()
         return restore

@@ -36,7 +36,7 @@ class Underside:
         return self._yielding.matrix(self._edge.front[columns] * self._sheet.grid.ny + np.array(columns, np.int64))
 
     def _in_front(self, sections: Sequence[int]) -> dict[int, int]:
-        """The column of each section that stands for it: the rearmost, so that no ice beside a new plate overlaps it."""
+        """The column that stands for each section: the rearmost, so that no ice beside a new plate overlaps it."""
         columns = {}
         for key in sections:
             first = key * self._columns

@@ -23,6 +23,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
+from rubble.contacts import accumulate
 from threadpoolctl import threadpool_limits
 
 import coupling.scheduler
@@ -43,7 +44,6 @@ from lattice.implicit.edge import Edge
 from lattice.implicit.engine import Engine
 from lattice.implicit.linear import CrackedSystem
 from lattice.sheet import Sheet
-from rubble.contacts import accumulate
 from rubble.layer import RubbleLayer
 from rubble.section import Section
 from rubble.water import apply_water

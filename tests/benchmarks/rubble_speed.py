@@ -17,11 +17,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pymunk
 
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 SECTIONS, BLOCKS, WIDTH, SIZE = 15, 500, 5.6, (4.0, 2.0)
 PHYSICS = RubblePhysics(

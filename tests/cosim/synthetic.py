@@ -115,6 +115,7 @@ def blocks(scenario: Scenario, t: float) -> BlockTable:
         np.full(n, 7 * h * 5.2 * 846),
         np.full(n, 5.2),
         np.array(centre),
+        np.array([(math.cos(a / 2), 0.0, -math.sin(a / 2), 0.0) for a in angle]),
         np.array(angle),
         zero,
         np.zeros(n),

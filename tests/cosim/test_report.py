@@ -44,7 +44,7 @@ def run():
         "scheme_loss",
         "fracture_loss",
         "contact_crushing_loss",
-        "side_push_loss",
+        "correction_loss",
     )
     event = Event(120_000_000, "split", (5e6, 0.0, 4e6), 3, (0.0, 0.0, 0.0), "it splits")
     return RunData(

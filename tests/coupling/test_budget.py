@@ -18,11 +18,11 @@ from lattice.implicit.engine import Engine
 from lattice.loads import NodeLoad
 from lattice.sheet import Sheet
 from lattice.stiffness import hrennikoff
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 RHO_I, RHO_W, G, H, LENGTH, WIDTH = 846.0, 1006.0, 9.81, 3.0, 8.0, 2.8
 BOX = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * np.array([LENGTH, H]) / 2.0

@@ -23,7 +23,7 @@ def close(book, *, sheet=90.0, crushed=1.0, rubble=7.0, cleared=2.0, energy=None
 
 def test_a_new_ledger_has_no_error():
     book = ledger()
-    for name in ("mass_error", "momentum_error", "angular_momentum_error", "angular_momentum_change"):
+    for name in ("mass_error", "momentum_error", "angular_momentum_error"):
         assert getattr(book, name) == 0.0
     assert (book.trimmed_mass, book.handed_over_mass, book.sheet_energy_residual) == (0.0, 0.0, 0.0)
 

@@ -40,6 +40,9 @@ class StubSheet:
         self.trace.append(f"path for sections {list(sections)}")
         return {}
 
+    def compliance(self, sections):
+        return np.zeros((2, len(sections), len(sections)))
+
     def view(self):
         return None
 
@@ -64,7 +67,7 @@ class StubRubble:
     def sections_in_use(self):
         return [3] if self.mass else []
 
-    def set_sheet(self, edges, carried):
+    def set_sheet(self, edges, carried, compliance):
         self.carried = carried.force.sum()
         self.trace.append(f"rubble sees sheet that carries {self.carried:g}")
 

@@ -55,7 +55,7 @@ def monolithic(windows):
         at = sheet.save(), rubble.save()
         rubble._force = force
         sheet.advance(0, round(dt * stubs.NS), rubble.forces_on_sheet(), None)
-        rubble.set_sheet(sheet.path([0]), None)
+        rubble.set_sheet(sheet.path([0]), None, None)
         rubble.advance(round(dt * stubs.NS))
         out = rubble._force
         after = sheet.save(), rubble.save()
@@ -117,7 +117,7 @@ class Wall:
     def sections_in_use(self):
         return [0]
 
-    def set_sheet(self, edges, carried):
+    def set_sheet(self, edges, carried, compliance):
         way = edges[0].x[0] + edges[0].velocity[0, 0] * WINDOW - carried.force[:, 0].sum() / self.k
         self.pressed = WALL * way / (1.0 + WALL / self.k)
 

@@ -6,36 +6,39 @@ import pytest
 from cosim.build import build
 from cosim.scenario.loading import load_scenario
 from coupling.interface import SimulationError
-from coupling.sheet_port.yielding import oscillator
+from coupling.sheet_port.yielding import Yielding
 
-WINDOW = 0.05
 HEAVY = ["sheet.nodes=[30,30]", "rubble.initial_volume='1500 m^3'", "scenario.duration='2 s'"]
 
 
-@pytest.mark.parametrize(("k", "m"), [(1e6, 9e4), (3e7, 9e4), (2e9, 6e5)])
-def test_an_oscillator_is_found_from_its_own_answer(k, m):
-    theta = WINDOW * np.sqrt(k / m)
-    x, v = (1 - np.cos(theta)) / k, np.sin(theta) * theta / WINDOW / k
-    assert theta < np.pi
-    assert oscillator(np.array([x]), np.array([v]), WINDOW) == (pytest.approx(k, rel=1e-6), pytest.approx(m, rel=1e-6))
+@pytest.fixture(scope="module")
+def sheet():
+    return build(load_scenario("scenarios/van_vliet_2018_floe_165m", ["sheet.nodes=[30,30]"])).sheet.sheet
 
 
-def test_a_free_mass_and_a_motion_that_is_over_are_the_ends():
-    x = np.array([1e-9, 1e-9])
-    k, m = oscillator(x, np.array([2.1 * 1e-9 / WINDOW, -1e-9]), WINDOW)
-    assert m[0] == pytest.approx(WINDOW**2 / 2 / x[0], rel=1e-3)
-    assert k[0] * WINDOW**2 < 1e-4 * m[0]
-    assert k[1] == pytest.approx(2 / x[1], rel=1e-9)
-
-
-def test_what_one_section_does_alone_is_softer_in_the_rubble_than_in_the_lattice():
-    """The condition of the coupling's stability: eigenvalues of P^-1 G between 0 and 1."""
-    sheet = build(load_scenario("scenarios/van_vliet_2018_floe_165m", ["sheet.nodes=[30,30]"])).sheet.sheet
+def test_the_compliance_is_that_of_the_lattice(sheet):
+    """Symmetric, positive, its row sums what all sections do together; one alone is stiffer than all together."""
     nodes = sheet.front[8:22] * sheet.grid.ny + np.arange(8, 22)
+    G = Yielding(sheet).matrix(nodes)
     together = sheet.answer(nodes)[0]
-    alone = np.stack([sheet.answer(nodes[k : k + 1])[0][0] for k in range(len(nodes))])
-    assert (alone > 0).all()
-    assert (together > alone).all()
+    for axis in range(2):
+        assert pytest.approx(G[axis].T, rel=1e-12) == G[axis]
+        assert np.linalg.eigvalsh(G[axis]).min() > 0.0
+        assert G[axis].sum(axis=1) == pytest.approx(together[:, axis], rel=1e-6)
+        assert (np.diag(G[axis]) < together[:, axis]).all()
+
+
+def test_columns_are_kept_while_their_nodes_stay_in_front(sheet, monkeypatch):
+    nodes = sheet.front[8:12] * sheet.grid.ny + np.arange(8, 12)
+    known = Yielding(sheet)
+    first = known.matrix(nodes)
+    steps = []
+    step = sheet.engine.step
+    monkeypatch.setattr(sheet.engine, "step", lambda *a: steps.append(1) or step(*a))
+    assert known.matrix(nodes[1:]).tobytes() == first[:, 1:, 1:].tobytes()
+    assert not steps
+    known.matrix(np.append(nodes, sheet.front[14] * sheet.grid.ny + 14))
+    assert len(steps) == 1
 
 
 def test_heavy_rubble_lies_still_under_a_light_sheet():

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from rubble.piece import Slab
 from rubble.cut import revolved
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 from rubble.sheet import SheetMotion
 
 WIDTH, H = 2.8, 3.0
@@ -48,9 +48,7 @@ def drive(layer, windows):
     for w in range(windows):
         for key in list(layer.sections):
             x = np.arange(-16.0, -50.0, -2.8) + 0.025 * w
-            layer.set_sheet(
-                key, SheetMotion(x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H, (1e9, 1e9), (1e8, 1e8))
-            )
+            layer.set_sheet(key, SheetMotion(x, 0 * x, x[0] + 1.4, np.tile((0.5, 0.0), (len(x), 1)), H))
         layer.advance(10)
     return layer
 
@@ -58,4 +56,6 @@ def drive(layer, windows):
 def picture(layer):
     t = layer.table()
     forces = [layer.sheet_forces(k) for k in layer.sections]
-    return b"".join(np.ascontiguousarray(a).tobytes() for a in (t.id, t.position, t.angle, t.velocity, t.load, *forces))
+    return b"".join(
+        np.ascontiguousarray(a).tobytes() for a in (t.id, t.position, t.quaternion, t.velocity, t.load, *forces)
+    )

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.energy import mechanical_energy
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 RHO_I, RHO_W, G, H, LENGTH, WIDTH, TIME = 846.0, 1006.0, 9.81, 3.0, 10.0, 2.8, 4.0
 AREA = LENGTH * WIDTH

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
-from rubble.piece import Slab
 from rubble.cut import plane
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 
 WALL = np.array([(0.0, -30.0), (10.0, -30.0), (10.0, 30.0), (0.0, 30.0)])
 

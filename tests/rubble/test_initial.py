@@ -34,9 +34,7 @@ def pile(volume, sections, seed=2018, mu=0.1, threads=1):
         x = np.arange(face - 0.5, face - 60.0, -2.8)
         layer.set_sheet(
             key,
-            SheetMotion(
-                x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H, (1e9, 1e9), (5e4, 5e4)
-            ),
+            SheetMotion(x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H),
         )
         fronts[key] = (face, UNDER)
     return layer, settle(layer, fronts, volume, seed)

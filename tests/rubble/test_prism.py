@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from rubble.piece import Slab, make_block
 from rubble.geometry import contiguous
+from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab
 from rubble.prism import wetted_edges
 
 WIDTH = 2.8
@@ -38,12 +39,15 @@ def test_a_block_begins_with_the_motion_that_it_is_given():
     physics = RubblePhysics(rho_i=850.0, rho_w=1000.0, added_mass=0.2, added_inertia=0.3, restitution=0.09)
     box = np.array([(8.0, -4.0), (12.0, -4.0), (12.0, -2.0), (8.0, -2.0)])
     slab = Slab(box, np.array([8.0, 12.0]), np.array([WIDTH]), 850.0)
-    b = make_block(5, 7, physics, slab, (0.1, 0.2, 0.3), 0.4, 1.5)
-    assert (b.id, b.fragment, b.y, b.body.angular_velocity) == (5, 7, 1.5, 0.4)
+    layer = RubbleLayer(physics, WIDTH)
+    b = layer.block(layer.add_block(0, slab, (0.1, 0.2, 0.3), 0.4, y=1.5, fragment=7))
+    assert (b.id, b.fragment) == (0, 7)
     np.testing.assert_allclose(b.velocity, [0.1, 0.2, 0.3])
-    np.testing.assert_allclose([b.body.position.x, b.body.position.y], [10.0, -3.0])
+    np.testing.assert_allclose(b.omega, [0.0, -0.4, 0.0])
+    np.testing.assert_allclose(b.position, [10.0, 1.5, -3.0])
     assert b.mass == pytest.approx(8.0 * WIDTH * 850.0)
     np.testing.assert_allclose(b.momentum, b.mass * np.array([0.1, 0.2, 0.3]))
-    assert b.body.mass == pytest.approx(b.mass + 0.2 * 8.0 * WIDTH * 1000.0)
-    assert b.body.moment == pytest.approx(8.0 * WIDTH * (16.0 + 4.0) / 12.0 * (850.0 + 0.3 * 1000.0))
-    assert b.shape.elasticity**2 == pytest.approx(0.09)
+    assert b.rows.moved[b.row] == pytest.approx(b.mass + 0.2 * 8.0 * WIDTH * 1000.0)
+    extents = np.array([2.0**2 + WIDTH**2, 4.0**2 + 2.0**2, 4.0**2 + WIDTH**2])
+    moved = 8.0 * WIDTH * extents / 12.0 * (850.0 + 0.3 * 1000.0)
+    np.testing.assert_allclose(b.rows.inertia[b.row], np.diag(moved), atol=1e-9 * moved.max())

@@ -25,7 +25,7 @@ def test_a_run_goes_on_from_its_checkpoint_with_the_same_bits(scene):
 def test_a_copy_with_two_threads_has_the_same_bits(scene):
     live, saved = checkpoint(scene.drive(scene.filled(), 30))
     two = restore(saved, live)
-    two.__setstate__({**two.__dict__, "threads": 2})
+    two.threads = 2
     assert scene.picture(scene.drive(two, 30)) == scene.picture(scene.drive(live, 30))
 
 
@@ -36,7 +36,7 @@ def test_loading_disturbs_nothing(scene):
     for i in range(8):
         scene.add(layer, 0, -20.0 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4), velocity=(0.0, 0.0))
     for _ in range(400):
-        layer.set_sheet(0, SheetMotion(x, 0 * x, x[0] + 1.4, np.zeros((len(x), 2)), 3.0, (1e9, 1e9), (1e9, 1e9)))
+        layer.set_sheet(0, SheetMotion(x, 0 * x, x[0] + 1.4, np.zeros((len(x), 2)), 3.0))
         layer.advance(10)
     layer.advance(200)  # no hand-over of the sheet between the windows that are compared
     layer.advance(10)
@@ -51,7 +51,7 @@ def test_loading_disturbs_nothing(scene):
 def test_a_wrong_copy_is_noticed(scene):
     live, saved = checkpoint(scene.drive(scene.filled(), 20))
     other = restore(saved, live)
-    other.block(0).v_y += 1e-9
+    other.block(0).velocity[1] += 1e-9
     assert scene.picture(scene.drive(live, 20)) != scene.picture(scene.drive(other, 20))
 
 

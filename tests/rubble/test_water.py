@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
-from rubble.arrays import filled
-from rubble.piece import Slab, make_block
-from rubble.bodies import STATE
 from rubble.energy import mechanical_energy
 from rubble.geometry import area_moments, clip, contiguous, place, submerged
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
+from rubble.piece import Slab, turned
+from rubble.plates import empty, orient_all
 from rubble.prism import inertia, strips, wetted_edges
-from rubble.water import Water, block_force
+from rubble.water import Hulls, Water, plate_forces
 
 PHYSICS = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=3.0)  # thesis values
 RHO_G = PHYSICS.rho_w * PHYSICS.g
@@ -40,9 +39,19 @@ def add_box(
 
 
 def force_on(edges, state, form=0.0, skin=0.0):
-    water = Water(RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0)
-    force = block_force(edges, 0, len(edges), water, 1.0, filled(STATE, state)[0])
-    return force.x, force.z, force.moment, force.drag_power
+    """Force x, z, moment from x towards z and power of drag on a plate of one piece at x, z, angle and their rates."""
+    water = Water(RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0, 0.0)
+    x, z, angle, v_x, v_z, omega = state
+    plates = empty(1)
+    plates.position[0], plates.quaternion[0] = (x, 0.0, z), turned(angle)
+    plates.velocity[0] = v_x, 0.0, v_z, 0.0, -omega, 0.0
+    orient_all(plates)
+    offset = np.array([0, len(edges)])
+    hulls = Hulls(np.zeros(1, np.int64), np.zeros(1), np.ones(1), edges, offset, np.zeros((1, 3)), np.zeros((1, 3)))
+    forces, lowest = np.zeros((1, 3, 6)), np.zeros(1)
+    plate_forces(plates, hulls, water, forces, lowest)
+    total, drag = forces[0].sum(axis=0), forces[0, 2]
+    return total[0], total[2], -total[4], float(drag @ plates.velocity[0])
 
 
 def edges_of(polygon, width=2.0):
@@ -171,35 +180,47 @@ def test_what_drag_takes_is_what_is_missing():
 
 
 def test_mass_of_a_block_and_its_strips():
-    block = make_block(
-        0,
-        0,
-        PHYSICS,
-        Slab(box(5.0, -1.0, 6.0, 2.0), np.array([2.0, 5.0, 8.0]), np.array([1.0, 3.0]), 900.0, 0.0),
-        (0.0, 0.0, 0.0),
-        0.0,
-        0.0,
-    )
+    layer = RubbleLayer(PHYSICS, 2.8)
+    slab = Slab(box(5.0, -1.0, 6.0, 2.0), np.array([2.0, 5.0, 8.0]), np.array([1.0, 3.0]), 900.0, 0.0)
+    block = layer.block(layer.add_block(0, slab))
     assert block.mass == pytest.approx(900 * 2 * 3 * (1 + 3), rel=1e-14)
-    assert block.body.position.x == pytest.approx((3.5 * 1 + 6.5 * 3) / 4)
-    assert area_moments(clip(block.prism.polygon, 1.0, 0.0, 1e9)).area == pytest.approx(12.0)
+    assert block.position[0] == pytest.approx((3.5 * 1 + 6.5 * 3) / 4)
+    assert area_moments(clip(block.pieces[0].prism.polygon, 1.0, 0.0, 1e9)).area == pytest.approx(12.0)
 
 
 def test_a_tilted_block_takes_its_strips_along_its_own_axis():
     tilted = place(contiguous(box(0.0, 0.0, 6.0, 2.0)), 4.0, -3.0, 0.4, 0.0, 0.0)
     middle = 4.0 * np.cos(0.4) - 3.0 * np.sin(0.4)
-    block = make_block(
-        0,
-        0,
-        PHYSICS,
-        Slab(tilted, middle + np.array([-3.0, 3.0]), np.array([2.0]), 900.0, 0.4),
-        (0.0, 0.0, 0.0),
-        0.0,
-        0.0,
+    layer = RubbleLayer(PHYSICS, 2.8)
+    block = layer.block(layer.add_block(0, Slab(tilted, middle + np.array([-3.0, 3.0]), np.array([2.0]), 900.0, 0.4)))
+    assert tuple(block.position) == pytest.approx((4.0, 0.0, -3.0))
+    prism = block.pieces[0].prism
+    assert np.ptp(prism.polygon[:, 0]) == pytest.approx(6.0)
+    assert abs(np.sin(prism.long_axis)) < 1e-12
+
+
+def test_water_lifts_a_plate_that_is_turned_about_all_axes():
+    """By what it displaces, straight up, through the middle of that: fully submerged, rho_w g V at its centre."""
+    plates = empty(1)
+    plates.position[0], plates.quaternion[0] = (
+        (3.0, 1.0, -20.0),
+        np.array([0.7, 0.4, -0.5, 0.33]) / np.linalg.norm([0.7, 0.4, -0.5, 0.33]),
     )
-    assert tuple(block.body.position) == pytest.approx((4.0, -3.0))
-    assert np.ptp(block.prism.polygon[:, 0]) == pytest.approx(6.0)
-    assert abs(np.sin(block.prism.long_axis)) < 1e-12
+    orient_all(plates)
+    edges = edges_of(contiguous(box(0.0, 0.0, 4.0, 1.0)), 2.5)
+    hulls = Hulls(
+        np.zeros(1, np.int64),
+        np.zeros(1),
+        np.ones(1),
+        edges,
+        np.array([0, len(edges)]),
+        np.zeros((1, 3)),
+        np.zeros((1, 3)),
+    )
+    forces, lowest = np.zeros((1, 3, 6)), np.zeros(1)
+    plate_forces(plates, hulls, Water(RHO_G, 500.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), forces, lowest)
+    lift = RHO_G * 10.0
+    assert forces[0, 0] == pytest.approx([0.0, 0.0, lift, 0.0, 0.0, 0.0], abs=1e-9 * lift)
 
 
 @pytest.mark.parametrize(
