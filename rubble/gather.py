@@ -14,7 +14,7 @@ from rubble.cut import nearest
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
 from rubble.rows import ICE, SHEET, STRUCTURE, Edges, Rows, set_arms, set_way
-from rubble.slices import Slices
+from rubble.slices import Pieces, Slices
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
 SAME_FACE = 1.0 - 1e-6  #: cosine from which a contact's normal is that of a face
@@ -25,6 +25,7 @@ class Sections(NamedTuple):
     """The sections for the kernels."""
 
     y: Array  #: (k,) their planes [m]
+    margin: Array  #: (k,) by which the structure in them is thicker than it is, see `section.Section` [m]
     space: IntArray  #: (k,) addresses of the spaces
     pairs: IntArray  #: (k,) addresses of their lists of pairs, `arbiters.LIST`
     faces: Records  #: `cut.Cut.bearings` of all sections
@@ -45,6 +46,7 @@ class Scene(NamedTuple):
     dt: float  #: sub-step [s]
     pitch: float  #: width of a section [m]
     widths: Array  #: (s,) of the slices along y [m]
+    pieces: Pieces
     strength: float  #: greatest pressure of a contact times the sub-step [Pa s]
     shortest: float  #: least length of a contact [m]
 
@@ -97,8 +99,11 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
             start, contact = count, integer(arbiter + layout.contacts)
             for p in range(points):
                 _row(scene, rows, count, i, arbiter, contact + p * layout.size, a, b)
-                set_arms(rows, count, scene.plates, scene.edges)
-                count += 1
+                if rows.point[count].depth >= 0.0:
+                    set_arms(rows, count, scene.plates, scene.edges)
+                    count += 1
+            if count == start:
+                continue
             _law(scene, rows, start, count)
             _first_guess(rows, start, count, old, integer(arbiter + layout.data), stamp)
             set_integer(arbiter + layout.data, (stamp << 24) | (start + 1))
@@ -115,7 +120,10 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
     nx, nz = real(arbiter + layout.n), real(arbiter + layout.n + 8)
     depth = (xa - xb) * nx + (za - zb) * nz
     if a > b:
-        a, b, nx, nz = b, a, -nx, -nz
+        a, b, nx, nz, xa, za, xb, zb = b, a, -nx, -nz, xb, zb, xa, za
+    if a == STRUCTURE_SLOT:
+        margin = scene.sections.margin[section]
+        xa, za, depth = xa - margin * nx, za - margin * nz, depth - margin
     point = rows.point[c]
     point.a, point.b = scene.plates.moved.shape[0] - 1, scene.slices.plate[b]
     point.edge, point.kind, point.slot_a, point.slot_b = -1, ICE, a, b
@@ -124,7 +132,8 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
     n_y = 0.0
     if a == STRUCTURE_SLOT:
         point.kind = STRUCTURE
-        n_y = nx * _bearing(scene.sections, section, point)
+        n_y, deeper = _on_structure(scene, section, point, nx)
+        depth += deeper
     elif a == SHEET_SLOT:
         point.kind, point.edge = SHEET, section
     else:
@@ -154,15 +163,29 @@ def _face_of(scene: Scene, s: int, px: float, pz: float) -> int:
 
 
 @compiled(nogil=True)
-def _bearing(sections: Sections, section: int, at: Record) -> float:
-    """n_y / n_x of the structure at a point in a section, see `cut`."""
+def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple[float, float]:
+    """n_y of the structure over its part in the plane, whose part along x is ``nx``; by how much the contact is deeper.
+
+    A piece that one plane alone cuts counts with the surface at its own middle, so that this recedes as it slides round
+    the structure. On a body of revolution the surface at another y has the same radius; on a facet it goes along it.
+    """
+    sections, slices, pieces = scene.sections, scene.slices, scene.pieces
     faces = sections.faces[sections.offset[section] : sections.offset[section + 1]]
-    face = faces[nearest(faces, at.x, at.z)]
-    ratio = float(face.constant)
+    face, y = faces[nearest(faces, point.x, point.z)], point.y
+    i, k = slices.piece[point.slot_b], point.b
+    if pieces.range[i, 0] == pieces.range[i, 1]:
+        y = scene.plates.position[k, 1] + scene.plates.rotation[k, 1, 1] * pieces.y[i]
+        y = min(max(y, point.y - 0.5 * scene.pitch), point.y + 0.5 * scene.pitch)
+    radius = np.hypot(point.x, point.y)
+    least = max(radius, 1e-9) / STEEPEST
+    x, shift = point.x, -face.constant * (y - point.y)
     if face.radial != 0.0:
-        x = at.x if abs(at.x) * STEEPEST > abs(at.y) else np.copysign(max(abs(at.y), 1e-9) / STEEPEST, at.x)
-        ratio += face.radial * at.y / x
-    return ratio
+        x = np.copysign(max(np.sqrt(max(radius * radius - y * y, 0.0)), least), point.x)
+        shift = x - point.x
+    elif abs(x) < least:
+        x = np.copysign(least, x)
+    point.y = y
+    return nx * (face.constant + face.radial * y / x), shift * nx
 
 
 @compiled(nogil=True)

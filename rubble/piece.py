@@ -13,6 +13,7 @@ from rubble.geometry import area_moments, contiguous, is_convex, place
 from rubble.physics import RubblePhysics
 from rubble.plates import Plates
 from rubble.prism import Prism, make_prism
+from rubble.slices import CORNERS
 
 
 @dataclass(frozen=True)
@@ -175,4 +176,6 @@ def _checked(polygon: Array) -> Array:
     out = contiguous(polygon)
     if not is_convex(out) or area_moments(out).area <= 0:
         raise ValueError(f"a block's outline with {len(out)} corners is not convex; split it into convex parts")
+    if len(out) > CORNERS - 2:
+        raise ValueError(f"a block's outline has {len(out)} corners; give at most {CORNERS - 2}")
     return out

@@ -22,7 +22,7 @@ HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 #: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
 #: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left [m]; plates a and b;
-#: section whose sheet is end a, else -1; kind, see above; numbers of the slices a and b, and which point of theirs it is
+#: section whose sheet is end a, else -1; kind, see above; slices a and b, and which point of theirs it is
 POINT = record(
     *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met"),
     integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature"),

@@ -9,8 +9,8 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from rubble.arbiters import PairList, note_pair
-from rubble.arrays import Array
-from rubble.cut import Cut
+from rubble.arrays import Array, filled
+from rubble.cut import FACE, Cut
 from rubble.geometry import contiguous
 from rubble.physics import RubblePhysics
 from rubble.pointers import address
@@ -41,8 +41,11 @@ class Slice:
 class Section:
     """Structure and sheet in the plane y, and the slices that meet them."""
 
-    def __init__(self, physics: RubblePhysics, cut: Cut, y: float) -> None:
+    def __init__(self, physics: RubblePhysics, cut: Cut, y: float, pitch: float) -> None:
         self.physics, self.cut, self.y = physics, cut, y
+        #: by so much pymunk sees the structure thicker than it is [m]: half a section to the side, a face that leads out
+        #: of the plane by less than 45 degrees stands by less than this in front of the one in the plane
+        self.margin = 0.5 * pitch if cut.bearings["constant"].any() or cut.bearings["radial"].any() else 0.0
         self.slopes = cut.slopes
         self.sheet: SheetBody | None = None
         self.pairs = PairList()
@@ -52,7 +55,7 @@ class Section:
         """A new space with the structure in it; slices and sheet come afterwards."""
         self.space = _new_space()
         for solid in self.cut.polygons:
-            shape = pymunk.Poly(self.space.static_body, solid.tolist())
+            shape = pymunk.Poly(self.space.static_body, solid.tolist(), radius=self.margin)
             shape.collision_type = STRUCTURE
             shape.filter = pymunk.ShapeFilter(categories=STRUCTURE_CATEGORY)
             self.space.add(shape)
@@ -103,4 +106,4 @@ def list_address(section: Section) -> int:
 def faces_of(sections: list[Section]) -> tuple[Any, Any]:
     """`Cut.bearings` of all sections one after the other, and where each begins."""
     faces = [s.cut.bearings for s in sections]
-    return np.concatenate(faces), np.cumsum([0, *map(len, faces)], dtype=np.int64)
+    return np.concatenate([filled(FACE, []), *faces]), np.cumsum([0, *map(len, faces)], dtype=np.int64)

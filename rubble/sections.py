@@ -44,7 +44,7 @@ class SectionTable:
         """The section with this number, made when first asked for."""
         if key not in self.by_key:
             y = self.origin + key * self.pitch
-            self.by_key[key] = Section(self.physics, self.solids(y), y)
+            self.by_key[key] = Section(self.physics, self.solids(y), y, self.pitch)
             self.by_key = dict(sorted(self.by_key.items()))
             self.changed = True
         return self.by_key[key]
@@ -116,6 +116,7 @@ class SectionTable:
         faces, offset = faces_of(sections)
         self.for_kernels = Sections(
             np.array([s.y for s in sections]),
+            np.array([s.margin for s in sections]),
             np.array([space_address(s) for s in sections], np.int64),
             np.array([list_address(s) for s in sections], np.int64),
             faces,

@@ -6,9 +6,10 @@ together are one body with a matrix W in place of an inverse mass (`yields`),
 
     w' = w + W (sum J - F_carried dt)   per sub-step, w = driven at the start of the window.
 
-W follows from the lattice: under a constant force over the window the edges go as far as the lattice does
-(`coupling.sheet_port.yielding`). A block caught between edge and structure is pressed with what it takes to move the
-sheet, no more; what limits the force further (crushing, failure) happens where it belongs.
+W = G / T^2 follows from the compliance G of the lattice over a window T (`coupling.sheet_port.yielding`). An edge that
+is stopped at the start of a window takes the impulse J = W^-1 v: the mean force J / T = G^-1 v T is that under which
+the lattice stays where it is stopped. A plate caught between edge and structure is pressed with what it takes to move
+the sheet, no more; what limits the force further (crushing, failure) happens where it belongs.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from rubble.arrays import Array, IntArray
 from rubble.compiled import compiled
 from rubble.plates import Plates, times, turn_back
 
-CORNERS = 16  #: most corners of a slice
+CORNERS = 32  #: most corners of a slice; the sides of a piece may add one each to those of its outline
 EDGE_ON = 1e-6  #: |e_y| of a plate that stands across the sections: below it a cut counts as this oblique
 
 

@@ -106,6 +106,7 @@ class Runner:
             dt=p.substep,
             pitch=sections.pitch,
             widths=width,
+            pieces=store.tables.pieces,
             strength=strength,
             shortest=shortest,
         )

@@ -60,11 +60,12 @@ def pressed_block(p: dict[str, Any], structure: Revolved, y: float) -> tuple[Rub
             convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE))
         ),
     )
-    z, angle = -1.5, 2.0 * np.pi * (np.arange(128) + 0.5) / 128
+    z, angle = -1.5, 2.0 * np.pi * (np.arange(24) + 0.5) / 24
     n = structure.normal(y, z)
     m = n[[0, 2]] / np.hypot(n[0], n[2])
-    middle = np.array([float(structure.face_x(y, z)), z]) + (SIZE - 1e-4) * m
-    outline = middle + SIZE * np.column_stack([np.cos(angle), np.sin(angle)])
+    round_ = SIZE * np.column_stack([np.cos(angle), np.sin(angle)])
+    middle = np.array([float(structure.face_x(y, z)), z]) + (float((-round_ @ m).max()) - 1e-4) * m
+    outline = middle + round_
     ends = np.array([outline[:, 0].min(), outline[:, 0].max()])
     number = layer.add_block(0, Slab(outline, ends, np.array([WIDTH]), p["rho_i"]), y=y)
     lift = (p["rho_w"] / p["rho_i"] - 1.0) * p["g"] * layer.mass
@@ -77,23 +78,19 @@ def slide(p: dict[str, Any], y: float, across: float) -> tuple[Array, Array, Arr
     """Measured and exact force on the structure (3,), and that of the section's balance, means while it slides [N]."""
     structure = cone(radians(p["slope"]), p["radius"], toe_depth=0.9 * p["radius"] * np.tan(radians(p["slope"])))
     layer, number, lift = pressed_block(p, structure, y)
-    layer.block(number).velocity[:] = _along(structure, y, across)
+    layer.block(number).velocity[:] = _along(structure, y, float(np.copysign(across, y)))
     measured, exact, section = [], [], []
-    for _ in range(200):
+    n = structure.normal(y, -1.5)
+    for _ in range(600):
         layer.advance(1)
-        now = layer.table()
+        now, at = layer.table(), layer.contact_centres()[0]
+        if np.isfinite(at).all():  # where the face curves away the plate may leave it for a sub-step or two
+            n = structure.normal(at[1], at[2])
         measured.append(now.load[0])
-        n = _normal(structure, y, now.position[0, [0, 2]])
-        exact.append(_load(p, n, now.velocity[0], lift, n))
+        bend = _bend(n, float(np.hypot(at[0], at[1])), now.velocity[0]) * layer.mass if np.isfinite(at).all() else 0.0
+        exact.append(_load(p, n, now.velocity[0], lift, n, bend))
         section.append(_load(p, n, now.velocity[0], lift, np.array([n[0], 0.0, n[2]])))
-    return np.mean(measured[20:], axis=0), np.mean(exact[20:], axis=0), np.mean(section[20:], axis=0)
-
-
-def _normal(structure: Revolved, y: float, centre: Array) -> Array:
-    """Of the cone (3,) where a round plate at ``centre`` touches it in the plane y."""
-    z = np.linspace(centre[1] - SIZE, centre[1] + SIZE, 2001)
-    gap = np.hypot(structure.face_x(y, z) - centre[0], z - centre[1])
-    return np.asarray(structure.normal(y, z[np.nanargmin(gap)]))
+    return np.mean(measured[200:], axis=0), np.mean(exact[200:], axis=0), np.mean(section[200:], axis=0)
 
 
 def _along(structure: Revolved, y: float, across: float) -> Array:
@@ -103,12 +100,18 @@ def _along(structure: Revolved, y: float, across: float) -> Array:
     return np.asarray(across * level)
 
 
-def _load(p: dict[str, Any], n: Array, velocity: Array, lift: float, balance: Array) -> Array:
-    """Force on the structure (3,) of a plate that slides with a velocity; nothing accelerates it along ``balance``."""
+def _bend(n: Array, radius: float, velocity: Array) -> float:
+    """Acceleration along -n of what follows a cone round its axis [m/s2]: v^2 times the part of n across, over r."""
+    across = float(np.hypot(n[0], n[1]))
+    return float(velocity @ np.array([-n[1], n[0], 0.0])) ** 2 / across / radius
+
+
+def _load(p: dict[str, Any], n: Array, velocity: Array, lift: float, balance: Array, bend: float = 0.0) -> Array:
+    """Force on the structure (3,) of a plate that slides with a velocity; it needs the force ``bend`` along -balance."""
     slip = velocity - (velocity @ n) * n
     contact = n - p["mu"] * slip / max(float(np.linalg.norm(slip)), 1e-12)
     load = np.array([p["thrust"] * lift, 0.0, lift])
-    return np.asarray(load @ balance / (contact @ balance) * contact)
+    return np.asarray((load @ balance + bend) / (contact @ balance) * contact)
 
 
 def run(p: dict[str, Any], _quick: bool) -> CaseResult:
@@ -121,7 +124,7 @@ def run(p: dict[str, Any], _quick: bool) -> CaseResult:
             measured, exact, section = slide(p, y * p["radius"], across)
             size = float(np.linalg.norm(exact))
             error, twin = np.abs(measured - exact).max() / size, np.abs(measured - section).max() / size
-            name = f"y = {y:g} R, sideways at {across:g} m/s: "
+            name = f"y = {y:g} R, outwards at {across:g} m/s: "
             quantities += [
                 near(f"{name}Fx, Fz", measured[[0, 2]], "N", exact[[0, 2]], 0.01, SOURCE),
                 near(f"{name}largest difference, part of the force", error, "-", 0.0, 0.01, SOURCE, "absolute"),

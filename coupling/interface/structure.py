@@ -42,7 +42,7 @@ class Structure(Protocol):
 
     @property
     def reach(self) -> float:
-        """The x behind which ice has passed the structure."""
+        """The x of its greatest width, or of its crest: ice behind has passed the structure."""
         ...
 
     def foremost_x(self, z: float) -> float:

@@ -100,8 +100,7 @@ class RubblePort:
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
         crushed, n = self.layer.crushed.mass, round(window_ns / NS / self.physics.substep)
-        #: n steps under a constant force come to n (n + 1) / 2 dt^2 times it
-        yields = self._compliance * (2.0 / (self.physics.substep**2 * n * (n + 1)))
+        yields = self._compliance / (n * self.physics.substep) ** 2  # see `rubble.sheet`
         self.layer.set_yields(list(self._edges), yields)
         try:
             self.layer.advance(n)

@@ -99,8 +99,8 @@ class MultiSidedCone(Profiled):
 
     @property
     def reach(self) -> float:
-        """Of the polygon at the waterline [m]."""
-        return float(self.profile.radius(0.0) * self._corners[0].max())
+        """The axis, where the body is widest: what has come so far goes on by itself [m]."""
+        return 0.0
 
     def foremost_x(self, z: float) -> float:
         """Of the foremost corner [m]."""

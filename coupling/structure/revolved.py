@@ -59,8 +59,8 @@ class Revolved(Profiled):
 
     @property
     def reach(self) -> float:
-        """Radius at the waterline [m]."""
-        return float(self.profile.radius(0.0))
+        """The axis, where the body is widest: what has come so far goes on by itself [m]."""
+        return 0.0
 
     def foremost_x(self, z: float) -> float:
         """-r(z) [m]."""

@@ -30,7 +30,7 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
     for window in range(round(seconds / 0.05)):
         if window % round(every / 0.05) == 0:
             for key in range(-2, 3):
-                x, y = -32.0 + random.uniform(-1, 1), layer.centre(key) + random.uniform(-1.5, 1.5)
+                x, y = -32.0 + random.uniform(-1, 1), layer.centre(key)
                 outline = np.array([(x - 2, -draft), (x + 2, -draft), (x + 2, H - draft), (x - 2, H - draft)])
                 number = layer.add_block(
                     key, Slab(outline, np.array([x - 2, x + 2]), np.array([WIDTH]), 846.0), (0.3, 0.0), y=y

@@ -160,7 +160,7 @@ def jam(k, travel, *, windows=60, applied=True):
                 (force if applied else 0.0, 0.0),
             ),
         )
-        layer.set_yields([0], np.array([2.0 / (k * 0.005**2 * 110.0), 0.0]).reshape(2, 1, 1))
+        layer.set_yields([0], np.array([1.0 / (k * 0.05**2), 0.0]).reshape(2, 1, 1))
         layer.advance(10)
         force = float(layer.sheet_forces(0)[:, 0].sum())
     return float(layer.load_on_structure[0, 0]), force
@@ -171,7 +171,7 @@ def test_a_jammed_block_is_pressed_with_the_sheets_stiffness_and_no_more(k, trav
     wall, sheet = jam(k, travel)
     assert k * (travel - 0.005 * H) < wall <= 1.001 * k * travel  # a part of the travel may stay as overlap
     assert k > 1e8 or wall == pytest.approx(k * travel, rel=0.02)
-    assert sheet == pytest.approx(-wall, rel=1e-6)
+    assert sheet == pytest.approx(-wall, rel=1e-6 if k < 1e8 else 1e-2)  # 30 MN still shake a block of 45 t
 
 
 def test_compliance_counts_twice_where_the_applied_force_is_left_out():

@@ -39,7 +39,7 @@ def test_a_block_begins_with_the_motion_that_it_is_given():
     physics = RubblePhysics(rho_i=850.0, rho_w=1000.0, added_mass=0.2, added_inertia=0.3, restitution=0.09)
     box = np.array([(8.0, -4.0), (12.0, -4.0), (12.0, -2.0), (8.0, -2.0)])
     slab = Slab(box, np.array([8.0, 12.0]), np.array([WIDTH]), 850.0)
-    layer = RubbleLayer(physics, WIDTH)
+    layer = RubbleLayer(physics, 0.5 * WIDTH)
     b = layer.block(layer.add_block(0, slab, (0.1, 0.2, 0.3), 0.4, y=1.5, fragment=7))
     assert (b.id, b.fragment) == (0, 7)
     np.testing.assert_allclose(b.velocity, [0.1, 0.2, 0.3])
