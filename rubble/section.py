@@ -43,8 +43,8 @@ class Section:
 
     def __init__(self, physics: RubblePhysics, cut: Cut, y: float, pitch: float) -> None:
         self.physics, self.cut, self.y = physics, cut, y
-        #: by so much pymunk sees the structure thicker than it is [m]: half a section to the side, a face that leads out
-        #: of the plane by less than 45 degrees stands by less than this in front of the one in the plane
+        #: by so much pymunk sees the structure thicker than it is [m]: half a section to the side, a face that leads
+        #: out of the plane by less than 45 degrees stands by less than this in front of the one in the plane
         self.margin = 0.5 * pitch if cut.bearings["constant"].any() or cut.bearings["radial"].any() else 0.0
         self.slopes = cut.slopes
         self.sheet: SheetBody | None = None

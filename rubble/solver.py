@@ -142,7 +142,7 @@ def solve(rows: Rows, count: int, plates: Plates, edges: Edges, iterations: int)
         own = plates.shift[i]
         own.x = own.y = own.z = own.a = own.b = own.c = 0.0
     edges.shift[:] = 0.0
-    deep = False
+    deep = count < 0
     for c in range(count):
         rows.point[c].shift = 0.0
         deep = deep or rows.point[c].shift_speed > 0.0

@@ -101,13 +101,13 @@ def _along(structure: Revolved, y: float, across: float) -> Array:
 
 
 def _bend(n: Array, radius: float, velocity: Array) -> float:
-    """Acceleration along -n of what follows a cone round its axis [m/s2]: v^2 times the part of n across, over r."""
+    """Acceleration along -n of what goes round the axis of a cone [m/s2]: v^2 times the part of n across, over r."""
     across = float(np.hypot(n[0], n[1]))
     return float(velocity @ np.array([-n[1], n[0], 0.0])) ** 2 / across / radius
 
 
 def _load(p: dict[str, Any], n: Array, velocity: Array, lift: float, balance: Array, bend: float = 0.0) -> Array:
-    """Force on the structure (3,) of a plate that slides with a velocity; it needs the force ``bend`` along -balance."""
+    """Force on the structure (3,) of a plate that slides; it needs the force ``bend`` along -balance to follow it."""
     slip = velocity - (velocity @ n) * n
     contact = n - p["mu"] * slip / max(float(np.linalg.norm(slip)), 1e-12)
     load = np.array([p["thrust"] * lift, 0.0, lift])

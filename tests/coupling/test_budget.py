@@ -55,7 +55,7 @@ def add(layer, x, z, angle=0.0, flooded=None):
 def budget_of(layer):
     """Budget of a layer without lattice, with its load."""
     terms = {name: tuple(f) for name, f in layer.budget.items()}
-    x, z = terms.pop("on_sheet")
+    x, _, z = sum((layer.sheet_forces(k).sum(axis=0) for k in layer.sections), np.zeros(3))
     load = layer.load_on_structure.sum(axis=0)
     return force_budget(load, {**terms, "staggering": (-x, -z)}), load
 
