@@ -16,7 +16,7 @@ from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
 from cosim.structures import KINDS, Kind
 from coupling.contact import CONTACTS, OverlapContact
-from coupling.schemes import SCHEMES, serial_explicit
+from coupling.schemes import SCHEMES, Iteration
 from coupling.structure import plane_slope
 from lattice.criteria.table import CRITERIA, Criterion
 from lattice.stiffness import STIFFNESS_SETS, Springs, hrennikoff
@@ -47,11 +47,11 @@ def test_a_stiffness_set(monkeypatch, usual):
 
 
 def test_a_coupling_scheme(monkeypatch, usual):
-    windows = []
+    windows, usual_scheme = [], SCHEMES["serial-explicit"](Iteration())
 
     def counting(scheduler):
         windows.append(scheduler.t_ns)
-        return serial_explicit(scheduler)
+        return usual_scheme(scheduler)
 
     monkeypatch.setitem(SCHEMES, "counting", lambda _: counting)
     assert peak("coupling.scheme='counting'") == usual

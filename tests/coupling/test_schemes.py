@@ -157,20 +157,22 @@ def test_the_stiffness_of_the_rubbles_edge_changes_the_way_not_the_answer(k):
 
 @pytest.mark.parametrize(("k", "grows"), [(0.5, False), (1.0, False), (2.0, False), (5.0, True)])
 def test_the_explicit_scheme_needs_an_edge_no_stiffer_than_the_sheet_is_in_a_window(k, grows):
-    """The error of the force changes by -(k / K - 1) k_w / (k_w + k) from window to window, K that of the sheet.
+    """The error of the rubble's answer is r = -(k / K - 1) k_w / (k_w + k) times that of the force on the sheet.
 
-    `coupling.yielding` therefore takes K from the whole window and from all sections together.
+    K is the stiffness of the sheet in a window. With the running mean the errors go on by the matrix
+    [[0.6 r, 0.4], [0.2 r, 0.8]]: its largest eigenvalue tells whether they grow.
     """
     scheme = SCHEMES["serial-explicit"](TIGHT)
     s = Scheduler(Pusher(), Wall(k * STIFFNESS), Ledger(1.0), round(WINDOW * stubs.NS), scheme)
     error = []
-    for n in range(1, 9):
+    for n in range(1, 60):
         s.macro_step()
         error.append(s.rubble.pressed - n * 1e-3 / (1.0 / WALL + 1.0 / STIFFNESS))
-    factor = -(k - 1.0) * WALL / (WALL + k * STIFFNESS)
+    r = -(k - 1.0) * WALL / (WALL + k * STIFFNESS)
+    largest = np.abs(np.linalg.eigvals([[0.6 * r, 0.4], [0.2 * r, 0.8]])).max()
     steady = np.diff(error)  # the load grows evenly: the lag is constant
-    assert steady[1:] == pytest.approx(factor * steady[:-1], rel=1e-6, abs=1e-3)
-    assert bool(abs(steady[-1]) > abs(steady[0]) + 1.0) == grows
+    assert bool(largest > 1.0) == grows
+    assert bool(np.abs(steady[-3:]).max() > np.abs(steady[:3]).max() + 1.0) == grows
 
 
 class WeakGaussSeidel:
@@ -192,4 +194,4 @@ def test_a_scheme_from_outside_is_one_entry_of_the_table(monkeypatch):
     monkeypatch.setitem(SCHEMES, "weak-gauss-seidel", lambda _: WeakGaussSeidel())
     errors = {name: [error(name, n) for n in (200, 400)] for name in ("weak-gauss-seidel", "serial-explicit")}
     assert np.log2(np.divide(*errors["weak-gauss-seidel"])) == pytest.approx(1.0, abs=0.2)
-    assert errors["weak-gauss-seidel"][1] > 1.2 * errors["serial-explicit"][1]
+    assert abs(errors["weak-gauss-seidel"][1] / errors["serial-explicit"][1] - 1.0) > 0.2
