@@ -35,7 +35,9 @@ class Yielding:
         live = int(s.live_cells.sum())
         if s.dt != self._window or abs(live - self._live) > OTHER_SHEET * len(s.live_cells):
             self._window, self._live, self._fields = s.dt, live, {}
-        fields = np.array([self._field(int(n))[nodes] for n in nodes]).reshape(-1, len(nodes), 2)
+        if not len(nodes):
+            return np.zeros((2, 0, 0))
+        fields = np.array([self._field(int(n))[nodes] for n in nodes])
         one_way = np.moveaxis(fields, 2, 0)
         return 0.5 * (one_way + np.swapaxes(one_way, 1, 2))
 

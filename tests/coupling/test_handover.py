@@ -107,7 +107,7 @@ def handed_over(ahead, omega=0.05):
 def test_a_fragment_is_one_plate_with_its_six_momenta(ahead):
     moved, layer = handed_over(ahead)
     assert moved.blocks == len(layer.blocks) == 1
-    assert len(layer.block(0).pieces) == 3
+    assert len(layer.blocks[0].pieces) == 3
     assert (moved.trimmed > 0.01 * moved.mass) == (ahead > 0.0)
     assert moved.momentum_error < 1e-12
     assert moved.angular_momentum_error < 1e-12
@@ -130,7 +130,7 @@ def test_the_momenta_are_those_of_the_nodes():
 def test_a_plate_of_a_rigid_fragment_moves_as_it_did():
     """But for the mass, which nodes have at the edge of their ice and a plate has in its middle."""
     _, layer = handed_over(-5.0)
-    plate = layer.block(0)
+    plate = layer.blocks[0]
     np.testing.assert_allclose(plate.omega, [0.0, -0.05, 0.0], atol=0.01)
     np.testing.assert_allclose(plate.rotation[:, 0], [np.cos(0.1), 0.0, np.sin(0.1)], atol=1e-12)
 
