@@ -52,10 +52,10 @@ def test_mass_closes_and_no_block_stands_in_the_structure(case, request):
     scheduler, _ = request.getfixturevalue(case)
     assert scheduler.ledger.mass_error < 1e-14
     layer = scheduler.rubble.layer
-    for section in layer.sections.values():
-        for block in section.blocks:
-            deep = overlap_area(block.outline, section.cut.polygons)
-            assert deep < 4.0 * layer.physics.slop * np.sqrt(block.prism.area), block.outline
+    for block in layer.blocks:
+        solids = layer.table_of_sections.solids(float(block.position[1])).polygons
+        deep = overlap_area(block.outline, solids)
+        assert deep < 4.0 * layer.physics.slop * np.sqrt(block.pieces[0].prism.area), block.outline
 
 
 def test_blocks_are_lifted_out_of_the_water(at_cone):

@@ -137,14 +137,14 @@ def test_with_open_cracks_the_floe_of_34_x_68_m_loads_the_cone_with_8_mn():
 
 
 def deepest(layer):
-    """Largest depth of a block in the structure [m]."""
+    """Largest depth of a corner of a plate in the structure, in the plane through the plate's middle [m]."""
     depth = 0.0
-    for section in layer.sections.values():
-        for block in section.blocks:
-            block.shape.cache_bb()
-            for hit in section.space.shape_query(block.shape):
-                if hit.shape is not None and hit.shape.body is section.space.static_body:
-                    depth = max([depth, *(-p.distance for p in hit.contact_point_set.points)])
+    for block in layer.blocks:
+        for solid in layer.table_of_sections.solids(float(block.position[1])).polygons:
+            edge = np.roll(solid, -1, axis=0) - solid
+            normal = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.hypot(*edge.T)[:, None]
+            inside = ((solid * normal).sum(axis=1) - block.outline @ normal.T).min(axis=1)
+            depth = max(depth, float(inside.max()))
     return depth
 
 
