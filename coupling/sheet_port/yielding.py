@@ -39,7 +39,7 @@ class Yielding:
             return np.zeros((2, 0, 0))
         fields = np.array([self._field(int(n))[nodes] for n in nodes])
         one_way = np.moveaxis(fields, 2, 0)
-        return 0.5 * (one_way + np.swapaxes(one_way, 1, 2))
+        return np.asarray(0.5 * (one_way + np.swapaxes(one_way, 1, 2)))
 
     def _field(self, node: int) -> Array:
         if node not in self._fields:
