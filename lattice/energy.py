@@ -141,7 +141,7 @@ class EnergyBooks:
     def _stock(self, s: State, live: BoolArray, present: BoolArray, leaving: BoolArray | None = None) -> Stock:
         e = self.engine
         return Stock(
-            self.springs(s.u, s.q, live) + e.layered_energy(s.u, s.q, leaving),
+            self.springs(s.u, s.q, live) + e.lean_energy(s.u, live) + e.layered_energy(s.u, s.q, leaving),
             self._foundation(s.q, present),
             self._kinetic(s, present),
             float(momentum_of(e.inertia_u, s.u_dot, present)),
@@ -203,7 +203,7 @@ class EnergyBooks:
         """Books the elastic energy of a cell that fails in state s."""
         live = np.zeros(self.engine.grid.cells, bool)
         live[cell] = True
-        self.fracture += self.springs(s.u, s.q, live)
+        self.fracture += self.springs(s.u, s.q, live) + self.engine.lean_energy(s.u, live)
 
     def book_departure(self, nodes: IntArray, cells: BoolArray, s: State, *, crushed: bool = False) -> None:
         """Books ice that leaves with all its energy; ``cells`` is the mask of its live cells."""

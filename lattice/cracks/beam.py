@@ -126,7 +126,7 @@ class BeamTest:
 
     def _begin(self) -> None:
         e, (u, q) = self.engine, self.engine.displacement()
-        stress, angle = face_stresses(CellState.of(self.cut.grid, u, q), self.ice)
+        stress, angle = face_stresses(CellState.of(self.cut.grid, u, q, lean=e.lean_strain()), self.ice)
         for cell in np.flatnonzero(self.live & (stress >= self.ice.sigma_t)):
             e.begin(int(cell), float(angle[cell]))
             self.live[cell] = False

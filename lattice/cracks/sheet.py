@@ -7,6 +7,8 @@ slipped by h in any case, or when it has turned by `TURNED`: not when its cells 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
@@ -16,7 +18,7 @@ from lattice.cracks.hinges import DEEP, Hinges, hinges, no_hinges
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import CRITERIA, Criterion
 from lattice.explicit.engine import Marched
-from lattice.explicit.forces import PointForces
+from lattice.explicit.forces import PointForces, Touch
 from lattice.explicit.window import Window
 from lattice.explicit_sheet import CONTACT_TIME, LIVELY, ExplicitSheet
 from lattice.floe import LOOSE, Release
@@ -78,14 +80,18 @@ class CrackingSheet(ExplicitSheet):
             out.failure = (now - (1.0 - part[0]) * e.dt, e.touch(now, w.contact).force)
         self.failed_cells += cells.tolist()
         self.failure_times += (now - (1.0 - part) * e.dt).tolist()
-        out.causes += self.judge.causes(ended.u, ended.q, self.standing, cells)
+        out.causes += self.judge.causes(ended.u, ended.q, self._eased(), cells)
         out.failed += cells.tolist()
-        _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells), self.ice)
+        lean = e.lean_strain()[:, cells]
+        _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells, lean=lean), self.ice)
         for cell, angle in zip(cells.tolist(), angles.tolist(), strict=True):
             self.energy.book_failure(cell, half)  # with x(n) . K x(n-1) / 2, as leapfrog has it
             self.energy.fracture -= e.begin(cell, angle)
             self.intact[cell] = False
         self._set_cells()
+
+    def _eased(self) -> Standing:
+        return replace(self.standing, lean=self.engine.lean_strain())
 
     def _ease(self) -> None:
         self._set_cells()
@@ -175,6 +181,10 @@ class CrackingSheet(ExplicitSheet):
         out = super()._march(w, done)
         self._pull += 0.5 * (out.steps * self.engine.dt) * sum(self._pulls)
         return out
+
+    def _book_half(self, part: float, w: Window, touch: Touch) -> None:
+        super()._book_half(part, w, touch)
+        self.engine.book_pull(part * self.engine.dt)
 
     def _holding(self, load: PointForces) -> float:
         """As `ExplicitSheet`, which looks before and after the sub-steps of a block."""

@@ -63,20 +63,22 @@ def test_a_segment_as_wide_at_its_hinge_as_at_its_rim_is_rejected(monkeypatch):
 
 def test_an_arch_whose_hinges_bear_no_thrust_does_not_stand(monkeypatch):
     """The wrong twin: cracks at both ends and midspan that carry nothing leave a mechanism."""
-    p = {**arch.PARAMETERS, "block": 6, "w": [0.05]}
-    standing = arch.lattice_arch(p, 4.0e6, 4.0).force[-1]
+    p = {**arch.PARAMETERS, "block": 6}
+    standing = arch.lattice_arch(p, 4.0e6, 0.15, 4.0).force[-1]
     monkeypatch.setattr(arch.CrackingEngine, "begin", lambda *_: 0.0)
-    lying = arch.lattice_arch(p, 4.0e6, 4.0).force[-1]
+    lying = arch.lattice_arch(p, 4.0e6, 0.15, 4.0).force[-1]
     assert standing > 1e6
     assert abs(lying) < 0.02 * standing
 
 
-def test_small_rotations_leave_the_arch_its_arm():
-    """The force of the elastic arch goes on in proportion to w, past w = 0.42 h where a real one snaps through."""
-    p = {**arch.PARAMETERS, "w": [0.6]}
-    found = arch.lattice_arch(p, np.inf, 12.0)
-    half, whole = (np.interp(s * 0.6 * p["h"], found.w, found.force) for s in (0.5, 1.0))
+def test_an_arch_without_slopes_keeps_its_arm(monkeypatch):
+    """The wrong twin: with the strains of u alone the force goes on in proportion to w and nothing snaps through."""
+    monkeypatch.setattr(arch.CrackingEngine, "slopes", False)
+    p = arch.PARAMETERS
+    found = arch.lattice_arch(p, np.inf, 1.5, 12.0)
+    half, whole = np.interp((0.75, 1.5), found.w, found.force)
     assert whole == pytest.approx(2.0 * half, rel=0.05)
+    assert whole > 1.5 * arch.arch_of_beams(p, 1.5)[0]
 
 
 def test_what_a_closed_crack_carries_is_the_same_on_two_meshes():

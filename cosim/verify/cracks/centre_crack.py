@@ -97,7 +97,7 @@ def pushed(p: dict[str, Any], nodes: int, crack: str) -> Pushed:
         for part in range(blocks):
             at[:, W] = -p["w"] * (look + (part + 0.5) / blocks) / LOOKS
             total -= float(e.march(e.sub_steps // blocks, NOTHING, touch, lively=False).contact[:, W].sum())
-        state = CellState.of(g, *e.displacement(), cells)
+        state = CellState.of(g, *e.displacement(), cells, lean=e.lean_strain()[:, cells])
         w.append(-float(e.at(tip)[:, W].mean()))
         force.append(total / blocks)
         use.append(np.array([[float(CRITERIA[j].judge(state, ice).max()) for ice in ices] for j in JUDGES]))
