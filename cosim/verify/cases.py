@@ -34,7 +34,17 @@ from cosim.verify import (
     wedge,
 )
 from cosim.verify.case import CaseResult
-from cosim.verify.cracks import arch, beam_test, centre_crack, friction, hinged_ring, thrust, wedge_beams
+from cosim.verify.cracks import (
+    arch,
+    beam_test,
+    centre_crack,
+    first_encounter,
+    friction,
+    hinged_ring,
+    pressed_edge,
+    thrust,
+    wedge_beams,
+)
 from cosim.verify.settings import merged, parse
 
 CASES: dict[str, ModuleType] = {
@@ -64,6 +74,8 @@ CASES: dict[str, ModuleType] = {
     "wedge-beams": wedge_beams,
     "hinged-ring": hinged_ring,
     "centre-crack": centre_crack,
+    "pressed-edge": pressed_edge,
+    "first-encounter": first_encounter,
 }
 
 

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, law_of
 from lattice.explicit.forces import NOTHING, Touch
@@ -24,7 +23,6 @@ from lattice.ice import Ice
 from lattice.properties import beam_strength
 from lattice.state import State
 from lattice.stiffness import hrennikoff
-from lattice.strain import CellState
 
 SPAN, WIDTH = 6.0, 2.0  #: length and width of a beam in thicknesses where no test is given: those of the basin's beam
 FEWEST = 2  #: cells over the width of the beam, however large the sheet's are
@@ -114,7 +112,7 @@ class BeamTest:
             made = e.march(block, NOTHING, touch, lively=False)
             t += made.steps * e.dt
             if made.failed:
-                self._begin()
+                e.crack(self.live)
             mean += 0.05 * (-float(made.contact[:, W].sum()) - mean)  # over the tremor of the tip
             largest = max(largest, mean)
             if mean < FALL * largest and t > 0.1 * e.window:
@@ -123,14 +121,6 @@ class BeamTest:
         raise ValueError(
             f"the simulated beam did not break after {t:.0f} s: a fracture energy of this size lets it bend"
         )
-
-    def _begin(self) -> None:
-        e, (u, q) = self.engine, self.engine.displacement()
-        stress, angle = face_stresses(CellState.of(self.cut.grid, u, q, lean=e.lean_strain()), self.ice)
-        for cell in np.flatnonzero(self.live & (stress >= self.ice.sigma_t)):
-            e.begin(int(cell), float(angle[cell]))
-            self.live[cell] = False
-        e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), np.ones(self.cut.grid.nodes, bool))
 
 
 def layer_strength(ice: Ice, mu: float, fracture_energy: float, beam: Beam, d: float) -> float:

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lattice.cracks.begin import face_stresses
 from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
 from lattice.cracks.law import CrackLaw
 from lattice.cracks.lean import book_pull, gather_lean, lean_energy, lean_on
 from lattice.cracks.march import Stretch, march_cracked
-from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give
+from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give, hourglass_energy
 from lattice.cracks.state import LayeredCells
 from lattice.explicit import layout
 from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine, SubSteps
@@ -22,6 +23,7 @@ from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
+from lattice.strain import CellState
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
 #: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
@@ -88,12 +90,21 @@ class CrackingEngine(ExplicitEngine):
         return made
 
     def begin(self, cell: int, angle: float) -> float:
-        """A cell becomes layered as it is now; returns the energy that its layers store [J]."""
-        k = self.layered.add(cell, self._corner(cell), angle)
+        """A cell becomes layered as it is now; returns the energy that it then stores [J]."""
+        k, nodes = self.layered.add(cell, self._corner(cell), angle), self._nodes()
         layered = self.layered.view()
-        stored = float(evaluate_at(k, self._nodes(), layered))
+        stored = float(evaluate_at(k, nodes, layered))
         layered.cells.losses[SWITCHING] += stored  # what the springs of the cell had is booked by who takes them away
-        return stored
+        return stored + float(hourglass_energy(k, nodes, layered))
+
+    def crack(self, live: BoolArray) -> None:
+        """Cells of ``live`` (cells,) at or past the strength of the layers become layered, and leave the mask."""
+        g, (u, q) = self.grid, self.displacement()
+        stress, angle = face_stresses(CellState.of(g, u, q, lean=self.lean_strain()), self.ice)
+        for cell in np.flatnonzero(live & (stress >= self.ice.sigma_t)):
+            self.begin(int(cell), float(angle[cell]))
+            live[cell] = False
+        self.set_cells(live, np.full(g.cells, self.ice.sigma_t), np.ones(g.nodes, bool))
 
     def _corner(self, cell: int) -> int:
         i, j = divmod(cell, self.grid.ny - 1)

@@ -144,6 +144,20 @@ def give(used: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) ->
 
 
 @compiled(nogil=True)
+def hourglass_energy(k: int, nodes: Nodes, layered: Layered) -> float:
+    """Of the hourglass modes of cell k, x(n) . K x(n-1) / 2, as leapfrog has it [J]."""
+    plate, b, q = layered.plate, layered.cells.corner[k], 0.5 / layered.plate.d
+    H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
+    _, y = strain_of(b, nodes.my, q, nodes.y)
+    _, v = strain_of(b, nodes.my, q, nodes.v)
+    now, before = -nodes.alpha, -nodes.alpha - nodes.dt
+    E = H * ((y.x + now * v.x) * (y.x + before * v.x) + (y.y + now * v.y) * (y.y + before * v.y))
+    E += R * ((y.tx + now * v.tx) * (y.tx + before * v.tx) + (y.ty + now * v.ty) * (y.ty + before * v.ty))
+    energy: float = 0.5 * plate.d * plate.d * E
+    return energy
+
+
+@compiled(nogil=True)
 def energies(my: int, x: Array, layered: Layered) -> Array:
     """Energy of each layered cell at displacements x (5, nodes), hourglass modes included."""
     plate, cracks, lean = layered.plate, layered.cells, layered.lean.strain
