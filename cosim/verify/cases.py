@@ -38,6 +38,7 @@ from cosim.verify.cracks import (
     arch,
     beam_test,
     centre_crack,
+    cone_breaking,
     first_encounter,
     friction,
     hinged_ring,
@@ -75,6 +76,7 @@ CASES: dict[str, ModuleType] = {
     "hinged-ring": hinged_ring,
     "centre-crack": centre_crack,
     "pressed-edge": pressed_edge,
+    "cone-breaking": cone_breaking,
     "first-encounter": first_encounter,
 }
 

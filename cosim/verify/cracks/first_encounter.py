@@ -3,7 +3,8 @@
 The campaign's sheet, contact and cone (`scenarios/basin_2010_floe_165m`), but in place of blocks the lift of 3000 m3 of
 rubble, spread evenly over the ice within 35 m of the cone's axis. Beside it two calculations that share no code with
 this one: rigid plates with finite rotations and fibres across their interfaces, and a prototype of the same law of
-cracks on the same lattice. Compared are peaks of the mean over half a second.
+cracks on the same lattice. Compared are peaks of the mean over half a second, and the rise of the load: with an edge
+that crushes and a sheet that holds the basin's own Fz went 1.7, 4, 6, 9.5, 11.8 MN in steps of 0.2 m of drift.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ from lattice.grid import Array
 
 PARAMETERS: dict[str, Any] = {"volume": 3000.0, "radius": 35.0, "seconds": 16.0, "nodes": 60}
 MEAN = 0.5  #: over which loads are averaged [s]
+RISE = (1.7e6, 4.0e6, 6.0e6, 9.5e6, 11.8e6)  #: Fz after each 0.2 m of drift [N]
+STEP = 2.0  #: time of 0.2 m of drift [s]
 SOURCE_PLATES, SOURCE_PROTOTYPE = "rigid plates with fibres", "lattice prototype"
 
 
@@ -121,12 +124,17 @@ def loads_of(p: dict[str, Any], variant: Variant) -> Loads:
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
-    """All variants; ``quick``: the first one to its rise on a mesh of 30 x 30, which has nothing to compare with."""
+    """All variants; ``quick``: the rise of the first one on a mesh of 30 x 30."""
     if quick:
-        p = {**p, "seconds": 4.0, "nodes": 30}
+        p = {**p, "seconds": 4.5, "nodes": 30}
     variants = VARIANTS[:1] if quick else VARIANTS
     found = [loads_of(p, v) for v in variants]
-    quantities: list[Quantity] = []
+    steps = np.arange(1, len(RISE) + 1) * STEP
+    steps = steps[steps + MEAN <= p["seconds"]]
+    rise, basin = np.interp(steps, found[0].t, found[0].fz), np.array(RISE[: len(steps)])
+    quantities: list[Quantity] = [
+        near("Fz after each 0.2 m of drift", rise, "N", basin, 0.25, "basin, first encounter")
+    ]
     for variant, loads in zip(variants, found, strict=True):
         fx, at, fz = loads.peak
         pair = np.array((fx, fz))
