@@ -43,11 +43,13 @@ class Variant:
 
 FREE, BRITTLE = "sheet.sides='free'", ("fracture.fracture_energy='0 J/m^2'", "ice.beam_test.concentration=1.29")
 UNKNOWN = (np.nan, np.nan)
+OPEN = ("fracture.cracks='open'", "ice.tensile_strength='967 kPa'", "ice.flexural_strength='967 kPa'")
 VARIANTS = (
     Variant("sides held, rubble", True, (), (16.1, 13.3), (17.0, 14.0)),
     Variant("sides held", False, (), (14.2, 11.7), (13.2, 10.9)),
     Variant("sides free, rubble", True, (FREE,), (12.5, 10.3), (14.3, 11.8)),
     Variant("sides free, brittle", False, (FREE, *BRITTLE), (9.6, 7.9), (9.7, 8.0)),
+    Variant("sides free, rubble, cracks that carry nothing", True, (FREE, *OPEN), (7.8, 6.4), UNKNOWN),
     Variant("sides held, rubble, brittle", True, BRITTLE, UNKNOWN, (15.0, 12.4)),
     Variant("sides held, rubble, 100 J/m2", True, ("fracture.fracture_energy='100 J/m^2'",), UNKNOWN, (14.8, 12.2)),
     Variant(
