@@ -98,7 +98,8 @@ class ExplicitSheet(Floe):
         self._end(window, out)
         mean, applied = window.mean(self.dt), window.applied(self.dt)
         whole = Mean(mean, mean, 1.0, 0.0)
-        out.reaction = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)
+        out.reaction = r = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)
+        r.held = (r.held[0] + window.pull / self.dt, r.held[1])
         return out
 
     def _begin(self, w: Window) -> None:
@@ -120,7 +121,8 @@ class ExplicitSheet(Floe):
         w.note(time, before, e.displacement(), self.support.held)
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
-        self.energy.hold += 0.5 * time * (holding + self._holding(w.load))
+        self.energy.hold += time * (0.5 * (holding + self._holding(w.load)) + out.pull)
+        w.pull += time * out.pull
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > self.lively * self.energy.stored

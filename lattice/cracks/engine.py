@@ -18,7 +18,7 @@ from lattice.explicit import layout
 from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine, SubSteps
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
-from lattice.explicit.layout import U_X, Motion
+from lattice.explicit.layout import Motion
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.state import State
@@ -43,7 +43,9 @@ class CrackingEngine(ExplicitEngine):
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        self.layered = LayeredCells(law, plate, layout.motion(grid).y[0].size)
+        held, along_x = layout.motion(grid).y[0], options["held_in_plane"].reshape(grid.nodes, -1)[:, 0]
+        held[: grid.nx, : grid.ny] = along_x.reshape(grid.nx, grid.ny)
+        self.layered = LayeredCells(law, plate, held.reshape(-1))
         self.layered.leans = self.slopes
         self.slow = options.get("sub_steps", TRUE_INERTIA).scaling > 1.0
         super().__init__(grid, ice, springs, window, **options)
@@ -147,14 +149,6 @@ class CrackingEngine(ExplicitEngine):
         g, strain = self.grid, self.layered.lean.strain.reshape(3, *self.motion.y.shape[1:])
         held: Array = strain[:, : g.nx - 1, : g.ny - 1].reshape(3, -1)
         return held
-
-    def pull(self, held: BoolArray) -> float:
-        """Force along x that nodes in ``held`` (nodes,) need against layered cells and slopes now [N]."""
-        layered, y, g = self.layered.view(), self.motion.y, self.grid
-        crack_forces(y.shape[2], y.reshape(5, -1), 1.0, layered)
-        on = held[g.cell_nodes[self.layered.cell]]  # (count, 4)
-        lean = layered.lean.force[U_X].reshape(y.shape[1:])[: g.nx, : g.ny].ravel()
-        return -float((layered.cells.force[:, U_X, : layered.used].T * on).sum()) - float(lean[held].sum())
 
     @property
     def crack_losses(self) -> dict[str, float]:

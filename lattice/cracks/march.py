@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from lattice.compiled import compiled
 from lattice.cracks.lean import book_pull, lean_on, look_at_slopes, overloaded_leaning
-from lattice.cracks.motion import Layered, Nodes, crack_forces, give, renew
+from lattice.cracks.motion import Layered, Nodes, crack_forces, give, pull_on_held, renew
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import Mesh, Motion, Pace
@@ -47,7 +47,7 @@ def march_cracked(
     layered: Layered,
 ) -> Made:
     """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
-    pace, room, contact_work, loss = mesh.pace, mesh.scratch, 0.0, 0.0
+    pace, room, contact_work, loss, pull = mesh.pace, mesh.scratch, 0.0, 0.0, 0.0
     cells, my, y = layered.cells, motion.y.shape[2], motion.y.reshape(5, -1)
     x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
     nodes = Nodes(y, motion.v.reshape(5, -1), x, way, my, pace.alpha, pace.go - pace.alpha)
@@ -60,6 +60,7 @@ def march_cracked(
         if step % stretch.stride == 0:
             damped(motion, mesh, layered)
         crack_forces(my, y, 1.0, layered)
+        pull += pull_on_held(my, layered)
         contact_work += half_power(load, touch, sums, motion.v)
         book_pull(0.5 * nodes.dt, nodes.v, layered)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
@@ -73,5 +74,5 @@ def march_cracked(
             loss += dissipated(motion.v, room.before, room.after, mesh.mass)
         count = overloaded_leaning(motion, mesh.threshold, screen, pace.alpha, layered)
         if count > 0:
-            return Made(step + 1, count, contact_work, loss)
-    return Made(stretch.steps, 0, contact_work, loss)
+            return Made(step + 1, count, contact_work, loss, pull)
+    return Made(stretch.steps, 0, contact_work, loss, pull)

@@ -39,6 +39,7 @@ class Layered(NamedTuple):
     plate: Plate
     law: CrackLaw
     lean: Lean
+    held: Array  #: (places,) 1 at nodes that are held along x, else 0
     leans: bool  #: slopes strain the middle plane; else rotations are small
 
 
@@ -141,6 +142,19 @@ def give(used: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) ->
                 dv = (u[g] if c < W else w[g] if c == W else phi[g]) * F[r, c, k]
                 v[c, n] += dv
                 y[c, n] += go * dv
+
+
+@compiled(nogil=True)
+def pull_on_held(my: int, layered: Layered) -> float:
+    """Force along x that held nodes need against the forces of `crack_forces` and of slopes [N]."""
+    held, F, lean, total = layered.held, layered.cells.force, layered.lean.force, 0.0
+    for k in range(layered.used):
+        b = layered.cells.corner[k]
+        total -= held[b] * F[0, U_X, k] + held[b + my] * F[1, U_X, k]
+        total -= held[b + 1] * F[2, U_X, k] + held[b + my + 1] * F[3, U_X, k]
+    for n in range(held.shape[0]):
+        total -= held[n] * lean[U_X, n]
+    return total
 
 
 @compiled(nogil=True)

@@ -17,13 +17,11 @@ from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.hinges import DEEP, Hinges, hinges, no_hinges
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import CRITERIA, Criterion
-from lattice.explicit.engine import Marched
-from lattice.explicit.forces import PointForces, Touch
+from lattice.explicit.forces import Touch
 from lattice.explicit.window import Window
 from lattice.explicit_sheet import CONTACT_TIME, LIVELY, ExplicitSheet
 from lattice.floe import LOOSE, Release
 from lattice.grid import Array, BoolArray, IntArray
-from lattice.loads import Loads
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import TURNED
 from lattice.strain import CellState
@@ -47,8 +45,6 @@ class CrackingSheet(ExplicitSheet):
     ):
         """As `ExplicitSheet`; the strengths of the ice are those of its layers."""
         super().__init__(engine, share=share, contact_time=contact_time, criteria=criteria)
-        self._pull = 0.0  #: impulse along x that held nodes have taken from layered cells in this window [N s]
-        self._pulls = 0.0, 0.0  #: force along x that they take, at the last two looks of `_holding` [N]
 
     def _check_rest(self) -> None:
         """Cells that are overloaded at rest begin to crack in the first window."""
@@ -167,27 +163,6 @@ class CrackingSheet(ExplicitSheet):
         out.causes += [TURNED_TOO_FAR] * len(cells)
         self.energy.fracture += self.engine.lose(mask[self.engine.layered.cell], self.state)
 
-    # ---- what held nodes take ---------------------------------------------------------------------------------
-
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `ExplicitSheet.advance`."""
-        self._pull = 0.0
-        out = super().advance(t, loads, contact, release)
-        r = out.reaction
-        r.held = (r.held[0] + self._pull / self.dt, r.held[1])
-        return out
-
-    def _march(self, w: Window, done: int) -> Marched:
-        out = super()._march(w, done)
-        self._pull += 0.5 * (out.steps * self.engine.dt) * sum(self._pulls)
-        return out
-
     def _book_half(self, part: float, w: Window, touch: Touch) -> None:
         super()._book_half(part, w, touch)
         self.engine.book_pull(part * self.engine.dt)
-
-    def _holding(self, load: PointForces) -> float:
-        """As `ExplicitSheet`, which looks before and after the sub-steps of a block."""
-        pull = self.engine.pull(self.support.held)
-        self._pulls = self._pulls[1], pull
-        return super()._holding(load) + pull

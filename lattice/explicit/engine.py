@@ -56,6 +56,7 @@ class Marched:
     contact_work: float  #: [J]
     work: Array  #: (loads,) of the other forces [J]
     loss: float  #: taken by hydrodynamic and material damping [J]
+    pull: float  #: mean force along x that held nodes take from cells that are no springs [N]
 
 
 class ExplicitEngine(Engine):
@@ -209,7 +210,8 @@ class ExplicitEngine(Engine):
         made = self.loop(steps, 1 if lively else steps, load, touch, sums)
         loss = made.loss * (1 if lively else made.steps)
         work, contact_work = self.dt * sums.work, self.dt * made.contact_work
-        return Marched(made.steps, made.overloaded > 0, sums.contact / made.steps, contact_work, work, loss)
+        contact, pull = sums.contact / made.steps, made.pull / made.steps
+        return Marched(made.steps, made.overloaded > 0, contact, contact_work, work, loss, pull)
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop. A lattice whose cells carry more than springs runs its own here."""
