@@ -163,10 +163,10 @@ class CrackingSheet(ExplicitSheet):
 
     # ---- what held nodes take ---------------------------------------------------------------------------------
 
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `ExplicitSheet.advance`."""
+    def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """As `ExplicitSheet._advance`."""
         self._pull = 0.0
-        out = super().advance(t, loads, contact, release)
+        out = super()._advance(t, loads, contact, release)
         r = out.reaction
         r.held = (r.held[0] + self._pull / self.dt, r.held[1])
         return out

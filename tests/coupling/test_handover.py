@@ -34,6 +34,7 @@ def fragment(rows=4, columns=3, *, turn=0.1, omega=0.05, cut=0.0, face=1.0):
         velocity=velocity,
         tilt=np.full(len(s), -turn),
         tilt_rate=np.full(len(s), -omega),
+        flooded=np.zeros(len(s)),
         cut=np.where(row == 0, cut, 0.0),
         cut_tan=np.ones(len(s)),
         cut_face=face,
