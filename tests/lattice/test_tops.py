@@ -1,8 +1,11 @@
 """Tops that flood and bottoms that leave the water: rigid plates whose motion is one ordinary differential equation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import root
 
 from lattice.contact import NoContact
 from lattice.explicit.engine import ExplicitEngine
@@ -22,13 +25,13 @@ MASS, DRAFT, WINDOW = ICE.rho_i * ICE.h, ICE.h - ICE.freeboard, 0.05
 ENGINES = [Sheet, ExplicitSheet]
 
 
-def floe(engine, rate, damping=0.0, lattice=GRID):
+def floe(engine, rate, damping=0.0, lattice=GRID, ice=ICE):
     """A floe that floats freely; without a rate its water is linear."""
     options = {"held_in_plane": np.zeros(lattice.nodes, bool), "damping": damping, "alpha": 1e-3}
     if engine is Sheet:
-        sheet = Sheet(Engine(lattice, ICE, hrennikoff(ICE), **options), WINDOW)
+        sheet = Sheet(Engine(lattice, ice, hrennikoff(ice), **options), WINDOW)
     else:
-        sheet = ExplicitSheet(ExplicitEngine(lattice, ICE, hrennikoff(ICE), WINDOW, **options))
+        sheet = ExplicitSheet(ExplicitEngine(lattice, ice, hrennikoff(ice), WINDOW, **options))
     if rate is not None:
         sheet.flood(rate)
     return sheet
@@ -108,6 +111,37 @@ def test_a_flooded_plate_sinks_at_the_speed_of_its_weight_less_its_buoyancy(engi
     area = GRID.area.sum()
     lift = outs[-1].reaction.foundation[1] + outs[-1].reaction.applied[ABOVE][1]
     assert lift == pytest.approx(ICE.k_f * ICE.freeboard * area, rel=1e-3)
+
+
+@pytest.mark.parametrize(("share", "rests"), [(0.8, True), (1.05, False)])
+def test_a_rigid_floe_pressed_down_along_an_edge_carries_what_flooded_ice_can(share, rests):
+    """Below the limit it comes to rest where forces and moments on a rigid plate balance; above it goes on sinking."""
+    grid = Grid(12, 3, 3.0)
+    length, width = 33.0, 6.0
+    b = length - np.sqrt(length**2 / (1.0 + ICE.freeboard / DRAFT))  # freeboard a^2 = draft b (2 length - b)
+    limit = ICE.k_f * width * (ICE.freeboard * (length - b) - DRAFT * b)
+    sheet, front = floe(Sheet, np.inf, 4000.0, grid, replace(ICE, E=1e12)), grid.edge_nodes("x+")
+    for k in range(900):
+        load = NodeLoad("weight", np.zeros((grid.nodes, 2)), np.zeros((grid.nodes, 3)))
+        load.force_q[front, 0] = -share * limit * grid.area[front] / grid.area[front].sum()
+        out = sheet.advance(k * WINDOW, [load], NoContact(), lambda nodes: None)
+        if out.pieces:
+            break
+    if not rests:
+        assert out.pieces  # it has turned by 0.1 rad as a whole
+        return
+
+    arm = length - grid.xy[:, 0]
+
+    def balance(y):
+        lift = ICE.k_f * grid.area * np.clip(-y[0] - y[1] * arm, -DRAFT, ICE.freeboard)
+        return lift.sum() / (share * limit) - 1.0, lift @ arm / (share * limit * length)
+
+    rest = root(balance, (-1.0, 0.05))
+    assert rest.success
+    w = rest.x[0] + rest.x[1] * arm
+    assert w.min() < -2.0 * ICE.freeboard
+    np.testing.assert_allclose(sheet.state.q[:, 0], w, atol=0.01 * np.abs(w).max())
 
 
 @pytest.mark.parametrize("engine", ENGINES)
