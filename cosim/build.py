@@ -100,7 +100,8 @@ def build_ice(scenario: Scenario) -> Ice:
 def filling_rate(scenario: Scenario) -> float:
     """Part of the head on a wet top that comes per second, on the sheet as on blocks [1/s]."""
     r = scenario.rubble
-    return {"full": math.inf, "none": 0.0, "filling": 1.0 / r.filling_time}[r.backfill]
+    rates: dict[str, float] = {"full": math.inf, "none": 0.0, "filling": 1.0 / r.filling_time}
+    return rates[r.backfill]
 
 
 def build_structure(scenario: Scenario) -> Structure:
