@@ -76,8 +76,8 @@ class ExplicitSheet(Floe):
             self.engine.set_window(dt)
             self.block = max(1, int(self._contact_time / self.engine.dt))
 
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `Floe.advance`; `release` is called with the state of that instant.
+    def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """As `Floe._advance`; `release` is called with the state of that instant.
 
         The mean contact force has a row for each node of the contact, then one for each node that left with force.
         """

@@ -57,8 +57,8 @@ class Sheet(Floe):
         self._drop_long_step()
         super().retire(nodes)
 
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `Floe.advance`; pieces leave with their state at the start of the window."""
+    def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """As `Floe._advance`; pieces leave with their state at the start of the window."""
         keep(loads, self.present)
         if any(load.acts for load in loads) or self._rotation().max() > TURNED:
             self._drop_long_step()

@@ -104,19 +104,19 @@ class RubbleLayer:
         *,
         y: float | None = None,
         fragment: int = 0,
-        flooded: bool | None = None,
+        flooded: float | None = None,
         alone: bool = True,
     ) -> int:
         """Make a block from ice in a section; returns its number.
 
         ``velocity`` (x, z) or (x, y, z) [m/s], ``omega`` [rad/s]; ``y`` is the middle of the section if not given [m].
-        ``flooded`` says whether its top is under water already, by default as `RubblePhysics.backfill` has it for a
-        new piece. ValueError if it stands in the structure or, unless ``alone`` is False, in another block.
+        ``flooded`` is the part of the head of water that its top carries, by default as `RubblePhysics.backfill` has it
+        for a new piece. ValueError if it stands in the structure or, unless ``alone`` is False, in another block.
         """
-        full = self.physics.backfill == "full" if flooded is None else flooded
+        full = float(self.physics.backfill == "full") if flooded is None else float(flooded)
         v_x, v_y, v_z = velocity if len(velocity) == 3 else (velocity[0], 0.0, velocity[1])
         at = self.centre(section) if y is None else y
-        block = make_block(self._next, fragment, self.physics, slab, (v_x, v_y, v_z), omega, at, float(full))
+        block = make_block(self._next, fragment, self.physics, slab, (v_x, v_y, v_z), omega, at, full)
         self.section(section).add(block, alone=alone)
         self._next += 1
         return block.id

@@ -95,11 +95,14 @@ class Ice(Section):
 
 
 class Water(Section):
-    """[water] A Kelvin foundation to the sheet; the blocks float, are dragged and drift in it."""
+    """[water] A foundation to the sheet; the blocks float, are dragged and drift in it."""
 
     density: Density  #: rho_w [kg/m3]
     gravity: Acceleration = 9.81  #: g [m/s2]
     damping: Coefficient = 0.1  #: hydrodynamic, as share of sqrt(k_f rho_i h) (thesis 4.2.1)
+    #: flood: a top of the sheet that is pressed under water fills as those of blocks do (`rubble.backfill`), and where
+    #: the sheet has left the water only its weight pulls it down; dry: a Kelvin foundation, linear without end (thesis)
+    tops: Literal["flood", "dry"] = "flood"
     #: velocity of the water along x and y in the frame of the structure; given, it also drags on the sheet's underside
     #: with rubble.skin_drag, also if it is zero; left out, the water is still and does not drag on the sheet [m/s]
     current: PlanVelocity = None

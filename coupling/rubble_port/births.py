@@ -29,6 +29,7 @@ class BlockBirth:
     velocity: Array  #: (3,) of the centre of mass [m/s]
     omega: float  #: from x towards z [rad/s]
     inertia: float  #: moment of inertia of its nodes about their centre [kg m2]
+    flooded: float  #: part of the head of water that its top carries, 0-1
 
     def momenta(self, about: Array) -> Array:
         """Momentum x, y, z of its ice, and angular momentum about a point (2,) in the x-z plane, (4,)."""
@@ -93,6 +94,7 @@ def _birth(f: Fragment, h: float, n: IntArray) -> BlockBirth:
         velocity=velocity,
         omega=omega,
         inertia=inertia,
+        flooded=float(np.average(f.flooded[n], weights=volume)),
     )
 
 

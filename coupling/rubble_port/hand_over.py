@@ -54,7 +54,10 @@ class Arrivals:
         if len(polygon) < 3 or area_moments(contiguous(polygon)).area < SMALLEST * self._physics.thickness**2:
             return None
         slab = Slab(polygon, b.cuts, b.widths, self._physics.rho_i, b.angle)
-        number = layer.add_block(key, slab, b.velocity.tolist(), b.omega, y=b.y, fragment=self.fragments, alone=False)
+        head = b.flooded if self._physics.filling_rate > 0.0 else None
+        number = layer.add_block(
+            key, slab, b.velocity.tolist(), b.omega, y=b.y, fragment=self.fragments, flooded=head, alone=False
+        )
         block = layer.block(number)
         self.born += energy_of(block, self._physics)
         return block

@@ -70,14 +70,14 @@ def departure(t_ns: int, load: Array, failed: Failed, f: Fragment, at_structure:
     return [*events, event(t_ns, "hand_over", load, failed, where, f"{text}, becomes rubble", (length, area))]
 
 
-def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) -> Event:
+def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float, linear: bool) -> Event:
     """Where the lattice's foundation ends.
 
     It pulls lifted ice down with rho_w g w, the missing buoyancy. That is right until the underside leaves the water at
-    w = draft; beyond, it pulls too much.
+    w = draft; beyond, it pulls too much if it is ``linear`` without end.
     """
-    text = (
-        f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "
-        "from here on the linear foundation pulls it down with more than its weight"
+    pull = (
+        "the linear foundation pulls it down with more than its weight" if linear else "only its weight pulls it down"
     )
+    text = f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: from here on {pull}"
     return event(t_ns, "out_of_water", load, NONE, where, text)
