@@ -20,7 +20,7 @@ from lattice.criteria.judge import Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.easing import Easing
 from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import PointForces, Touch, touch_at
+from lattice.explicit.forces import Touch, touch_at
 from lattice.explicit.layout import U_X
 from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
@@ -115,14 +115,13 @@ class ExplicitSheet(Floe):
         e, contact = self.engine, w.contact
         steps = min(self.block, e.sub_steps - done)
         touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
-        before, holding = e.displacement(), self._holding(w.load)
+        before = e.displacement()
         out = e.march(steps, w.load, touch, self._lively)
         time = out.steps * e.dt
         w.note(time, before, e.displacement(), self.support.held)
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
-        self.energy.hold += time * (0.5 * (holding + self._holding(w.load)) + out.pull)
-        w.pull += time * out.pull
+        self._hold(w, time, out.hold, out.pull)
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > self.lively * self.energy.stored
@@ -194,12 +193,11 @@ class ExplicitSheet(Floe):
 
     # ---- energy ------------------------------------------------------------------------------------------------
 
-    def _holding(self, load: PointForces) -> float:
-        """Force along x at the held edge now, less what loads bring to it at once [N]."""
-        u, _ = self.engine.displacement(-self.engine.alpha / self.engine.dt)  # x + alpha v
-        springs = self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
-        on_held = self.support.held[load.row * self.grid.ny + load.column]
-        return springs - float(load.force[on_held, U_X].sum())
+    def _hold(self, w: Window, time: float, hold: float, pull: float) -> None:
+        """Books forces of the held nodes along x [N] for a time [s]; what loads bring to these at once is not held."""
+        on_held = self.support.held[w.load.row * self.grid.ny + w.load.column]
+        self.energy.hold += time * (hold - float(w.load.force[on_held, U_X].sum()))
+        w.pull += time * pull
 
     def _book(self, w: Window, out: Marched, touch: Touch) -> None:
         """Books sub-steps that have begun with the points of the contact where ``touch`` is linear about."""
@@ -222,6 +220,7 @@ class ExplicitSheet(Floe):
         """
         v, time = self.engine.get(self.engine.motion.v), part * self.engine.dt
         f = touch.at_once()
+        self._hold(w, time, *self.engine.pull())
         self.energy.touch.add(time, f.force, v[f.row * w.columns + f.column])
         nodes = w.load.row * w.columns + w.load.column
         for name, of in w.by_name():

@@ -12,7 +12,7 @@ from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
 from lattice.cracks.law import CrackLaw
 from lattice.cracks.lean import book_pull, gather_lean, lean_energy, lean_on
 from lattice.cracks.march import Stretch, march_cracked
-from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give, hourglass_energy
+from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give, hourglass_energy, pull_on_held
 from lattice.cracks.state import LayeredCells
 from lattice.explicit import layout
 from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine, SubSteps
@@ -43,9 +43,7 @@ class CrackingEngine(ExplicitEngine):
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        held, along_x = layout.motion(grid).y[0], options["held_in_plane"].reshape(grid.nodes, -1)[:, 0]
-        held[: grid.nx, : grid.ny] = along_x.reshape(grid.nx, grid.ny)
-        self.layered = LayeredCells(law, plate, held.reshape(-1))
+        self.layered = LayeredCells(law, plate, layout.motion(grid).y[0].size)
         self.layered.leans = self.slopes
         self.slow = options.get("sub_steps", TRUE_INERTIA).scaling > 1.0
         super().__init__(grid, ice, springs, window, **options)
@@ -84,6 +82,13 @@ class CrackingEngine(ExplicitEngine):
     def book_pull(self, time: float) -> None:
         """Books the work of slopes at the present velocity for a time [s]."""
         book_pull(time, self.motion.v.reshape(5, -1), self.layered.view())
+
+    def pull(self) -> tuple[float, float]:
+        """As `ExplicitEngine.pull`, from layered cells and slopes as well."""
+        layered, y = self.layered.view(), self.motion.y
+        crack_forces(y.shape[2], y.reshape(5, -1), 1.0, layered)
+        pull = float(pull_on_held(y.shape[2], self.mesh.held.reshape(-1), layered))
+        return super().pull()[0] + pull, pull
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""

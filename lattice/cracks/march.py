@@ -8,7 +8,7 @@ from lattice.compiled import compiled
 from lattice.cracks.lean import book_pull, lean_on, look_at_slopes, overloaded_leaning
 from lattice.cracks.motion import Layered, Nodes, crack_forces, give, pull_on_held, renew
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
-from lattice.explicit.kernels import push, sweep
+from lattice.explicit.kernels import pull_of_springs, push, sweep
 from lattice.explicit.layout import Mesh, Motion, Pace
 from lattice.explicit.march import contact_force, dissipated, half_power
 from lattice.explicit.screen import Screen
@@ -47,7 +47,8 @@ def march_cracked(
     layered: Layered,
 ) -> Made:
     """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
-    pace, room, contact_work, loss, pull = mesh.pace, mesh.scratch, 0.0, 0.0, 0.0
+    pace, room, contact_work, loss = mesh.pace, mesh.scratch, 0.0, 0.0
+    hold = pull = 0.0
     cells, my, y = layered.cells, motion.y.shape[2], motion.y.reshape(5, -1)
     x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
     nodes = Nodes(y, motion.v.reshape(5, -1), x, way, my, pace.alpha, pace.go - pace.alpha)
@@ -60,7 +61,8 @@ def march_cracked(
         if step % stretch.stride == 0:
             damped(motion, mesh, layered)
         crack_forces(my, y, 1.0, layered)
-        pull += pull_on_held(my, layered)
+        hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
+        pull += pull_on_held(my, mesh.held.reshape(-1), layered)
         contact_work += half_power(load, touch, sums, motion.v)
         book_pull(0.5 * nodes.dt, nodes.v, layered)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
@@ -74,5 +76,5 @@ def march_cracked(
             loss += dissipated(motion.v, room.before, room.after, mesh.mass)
         count = overloaded_leaning(motion, mesh.threshold, screen, pace.alpha, layered)
         if count > 0:
-            return Made(step + 1, count, contact_work, loss, pull)
-    return Made(stretch.steps, 0, contact_work, loss, pull)
+            return Made(step + 1, count, contact_work, loss, hold + pull, pull)
+    return Made(stretch.steps, 0, contact_work, loss, hold + pull, pull)

@@ -39,7 +39,6 @@ class Layered(NamedTuple):
     plate: Plate
     law: CrackLaw
     lean: Lean
-    held: Array  #: (places,) 1 at nodes that are held along x, else 0
     leans: bool  #: slopes strain the middle plane; else rotations are small
 
 
@@ -145,9 +144,9 @@ def give(used: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) ->
 
 
 @compiled(nogil=True)
-def pull_on_held(my: int, layered: Layered) -> float:
-    """Force along x that held nodes need against the forces of `crack_forces` and of slopes [N]."""
-    held, F, lean, total = layered.held, layered.cells.force, layered.lean.force, 0.0
+def pull_on_held(my: int, held: Array, layered: Layered) -> float:
+    """Force along x that nodes with ``held`` (places,) 1 need against `crack_forces` and slopes [N]."""
+    F, lean, total = layered.cells.force, layered.lean.force, 0.0
     for k in range(layered.used):
         b = layered.cells.corner[k]
         total -= held[b] * F[0, U_X, k] + held[b + my] * F[1, U_X, k]

@@ -18,10 +18,10 @@ from lattice.grid import Array, BoolArray, IntArray
 class LayeredCells:
     """Layered cells in the order in which they began."""
 
-    def __init__(self, law: CrackLaw, plate: Plate, held: Array, room: int = 64):
-        """``held`` (places,) is 1 at nodes that are held along x, in a padded row-by-row array of all nodes."""
+    def __init__(self, law: CrackLaw, plate: Plate, places: int, room: int = 64):
+        """``places`` of a padded row-by-row array of all nodes."""
         self.law, self.plate, self.count, self._cracks = law, plate, 0, room_for(room)
-        self.held, self.lean, self.leans = held, level(len(held)), True
+        self.lean, self.leans = level(places), True
 
     def __copy__(self) -> LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
@@ -33,7 +33,7 @@ class LayeredCells:
 
     def view(self) -> Layered:
         """What the compiled loops take; changes of the arrays are seen here."""
-        return Layered(self.count, self._cracks, self.plate, self.law, self.lean, self.held, self.leans)
+        return Layered(self.count, self._cracks, self.plate, self.law, self.lean, self.leans)
 
     def add(self, cell: int, corner: int, angle: float) -> int:
         """A cell begins to crack across the direction ``angle`` [rad]; returns its place. ``corner`` as in `Cracks`."""

@@ -197,7 +197,7 @@ def energy(cracks, plate, the_law, x):
 
 
 def nodal(cracks, plate, x):
-    crack_forces(2, np.ascontiguousarray(x), 1.0, Layered(1, cracks, plate, law(), level(4), np.zeros(4), leans=False))
+    crack_forces(2, np.ascontiguousarray(x), 1.0, Layered(1, cracks, plate, law(), level(4), leans=False))
     return cracks.force[:, :, 0]  # nodes (0,0), (1,0), (0,1), (1,1)
 
 

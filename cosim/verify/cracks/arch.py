@@ -116,7 +116,7 @@ def _push(e: CrackingEngine, depth: float, seconds: float) -> Arch:
     """Down to this depth [m]; force and thrust are means over a hundredth of the way."""
     g, block = e.grid, 20
     middle = np.flatnonzero(np.abs(g.xy[:, 0] - g.xy[:, 0].mean()) < g.d)
-    e.layered.held.reshape(e.motion.y.shape[1:])[1:] = 0.0  # what the wall on the left takes
+    e.mesh.held[1:] = 0.0  # `Marched.hold` is what the wall on the left takes
     spring, m = 0.1 * float(e.inertia_q[3 * middle].min()) / e.dt**2, len(middle)
     at, tangent, zero = np.zeros((m, 3)), np.zeros((m, 3, 3)), np.zeros(m)
     tangent[:, W, W] = -spring
@@ -125,7 +125,7 @@ def _push(e: CrackingEngine, depth: float, seconds: float) -> Arch:
     for k in range(blocks):
         at[:, W] = -depth * (k + 0.5) / blocks
         made = e.march(block, NOTHING, touch, lively=False)
-        rows.append((-float(e.at(middle)[:, W].mean()), -float(made.contact[:, W].sum()) / width, made.pull / width))
+        rows.append((-float(e.at(middle)[:, W].mean()), -float(made.contact[:, W].sum()) / width, made.hold / width))
     size = max(1, blocks // 100)
     w, force, thrust = np.array(rows)[: blocks // size * size].reshape(-1, size, 3).mean(axis=1).T
     return Arch(w, force, thrust)
