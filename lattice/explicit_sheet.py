@@ -99,7 +99,7 @@ class ExplicitSheet(Floe):
         mean, applied = window.mean(self.dt), window.applied(self.dt)
         whole = Mean(mean, mean, 1.0, 0.0)
         out.reaction = r = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)
-        r.held = (r.held[0] + window.pull / self.dt, r.held[1])
+        r.held = (window.hold / self.dt, r.held[1])
         return out
 
     def _begin(self, w: Window) -> None:
@@ -121,7 +121,7 @@ class ExplicitSheet(Floe):
         w.note(time, before, e.displacement(), self.support.held)
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
-        self._hold(w, time, out.hold, out.pull)
+        self._hold(w, time, out.hold)
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > self.lively * self.energy.stored
@@ -193,11 +193,12 @@ class ExplicitSheet(Floe):
 
     # ---- energy ------------------------------------------------------------------------------------------------
 
-    def _hold(self, w: Window, time: float, hold: float, pull: float) -> None:
+    def _hold(self, w: Window, time: float, hold: float) -> None:
         """Books forces of the held nodes along x [N] for a time [s]; what loads bring to these at once is not held."""
         on_held = self.support.held[w.load.row * self.grid.ny + w.load.column]
-        self.energy.hold += time * (hold - float(w.load.force[on_held, U_X].sum()))
-        w.pull += time * pull
+        impulse = time * (hold - float(w.load.force[on_held, U_X].sum()))
+        self.energy.hold += impulse
+        w.hold += impulse
 
     def _book(self, w: Window, out: Marched, touch: Touch) -> None:
         """Books sub-steps that have begun with the points of the contact where ``touch`` is linear about."""
@@ -220,7 +221,7 @@ class ExplicitSheet(Floe):
         """
         v, time = self.engine.get(self.engine.motion.v), part * self.engine.dt
         f = touch.at_once()
-        self._hold(w, time, *self.engine.pull())
+        self._hold(w, time, self.engine.hold())
         self.energy.touch.add(time, f.force, v[f.row * w.columns + f.column])
         nodes = w.load.row * w.columns + w.load.column
         for name, of in w.by_name():

@@ -78,7 +78,7 @@ class Support:
         dof = (2 * local[:, :, None] + np.arange(2)).reshape(len(local), 8)
         self._springs = SpringTable(dof, engine.springs_u.place, engine.springs_u.value)
         self._reacts = np.flatnonzero(self.held[self._around])
-        self.coefficients = Coefficients(engine.k_f, engine.C_q, engine.M_q, engine.M_u)
+        self.coefficients = Coefficients(engine.k_f, engine.C_q, engine.inertia_q, engine.inertia_u)
 
     def applied(self, loads: Loads) -> Applied:
         """Sums of constant loads."""

@@ -83,12 +83,11 @@ class CrackingEngine(ExplicitEngine):
         """Books the work of slopes at the present velocity for a time [s]."""
         book_pull(time, self.motion.v.reshape(5, -1), self.layered.view())
 
-    def pull(self) -> tuple[float, float]:
-        """As `ExplicitEngine.pull`, from layered cells and slopes as well."""
+    def hold(self) -> float:
+        """As `ExplicitEngine.hold`, from layered cells and slopes as well."""
         layered, y = self.layered.view(), self.motion.y
         crack_forces(y.shape[2], y.reshape(5, -1), 1.0, layered)
-        pull = float(pull_on_held(y.shape[2], self.mesh.held.reshape(-1), layered))
-        return super().pull()[0] + pull, pull
+        return super().hold() + float(pull_on_held(y.shape[2], self.mesh.held.reshape(-1), layered))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""

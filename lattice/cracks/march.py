@@ -48,7 +48,7 @@ def march_cracked(
 ) -> Made:
     """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
     pace, room, contact_work, loss = mesh.pace, mesh.scratch, 0.0, 0.0
-    hold = pull = 0.0
+    hold = 0.0
     cells, my, y = layered.cells, motion.y.shape[2], motion.y.reshape(5, -1)
     x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
     nodes = Nodes(y, motion.v.reshape(5, -1), x, way, my, pace.alpha, pace.go - pace.alpha)
@@ -62,7 +62,7 @@ def march_cracked(
             damped(motion, mesh, layered)
         crack_forces(my, y, 1.0, layered)
         hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
-        pull += pull_on_held(my, mesh.held.reshape(-1), layered)
+        hold += pull_on_held(my, mesh.held.reshape(-1), layered)
         contact_work += half_power(load, touch, sums, motion.v)
         book_pull(0.5 * nodes.dt, nodes.v, layered)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
@@ -76,5 +76,5 @@ def march_cracked(
             loss += dissipated(motion.v, room.before, room.after, mesh.mass)
         count = overloaded_leaning(motion, mesh.threshold, screen, pace.alpha, layered)
         if count > 0:
-            return Made(step + 1, count, contact_work, loss, hold + pull, pull)
-    return Made(stretch.steps, 0, contact_work, loss, hold + pull, pull)
+            return Made(step + 1, count, contact_work, loss, hold)
+    return Made(stretch.steps, 0, contact_work, loss, hold)

@@ -57,7 +57,6 @@ class Marched:
     work: Array  #: (loads,) of the other forces [J]
     loss: float  #: taken by hydrodynamic and material damping [J]
     hold: float  #: mean force along x that held nodes take from all cells [N]
-    pull: float  #: part of it from cells that are no springs [N]
 
 
 class ExplicitEngine(Engine):
@@ -215,12 +214,12 @@ class ExplicitEngine(Engine):
         loss = made.loss * (1 if lively else made.steps)
         work, contact_work = self.dt * sums.work, self.dt * made.contact_work
         n, failed = made.steps, made.overloaded > 0
-        return Marched(n, failed, sums.contact / n, contact_work, work, loss, made.hold / n, made.pull / n)
+        return Marched(n, failed, sums.contact / n, contact_work, work, loss, made.hold / n)
 
-    def pull(self) -> tuple[float, float]:
-        """Force along x that held nodes take from all cells now, and from those that are no springs [N]."""
+    def hold(self) -> float:
+        """Force along x that held nodes take from all cells now [N]."""
         mesh = self.mesh
-        return float(pull_of_springs(self.motion, mesh.intact, mesh.held, mesh.springs)), 0.0
+        return float(pull_of_springs(self.motion, mesh.intact, mesh.held, mesh.springs))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop. A lattice whose cells carry more than springs runs its own here."""

@@ -55,7 +55,6 @@ class Made(NamedTuple):
     contact_work: float  #: sum of the power of the contact [W]
     loss: float  #: work of damping in the sub-steps that were looked at [J]
     hold: float  #: sum of the force along x that held nodes take from all cells [N]
-    pull: float  #: part of it from cells that are no springs [N]
 
 
 NOTHING = PointForces(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 5)), np.zeros(1, np.int64))

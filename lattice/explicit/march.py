@@ -105,5 +105,5 @@ def march(
             loss += dissipated(motion.v, mesh.scratch.before, mesh.scratch.after, mesh.mass)
         count = overloaded(motion, mesh.threshold, screen, pace.alpha)
         if count > 0:
-            return Made(step + 1, count, contact_work, loss, hold, 0.0)
-    return Made(steps, 0, contact_work, loss, hold, 0.0)
+            return Made(step + 1, count, contact_work, loss, hold)
+    return Made(steps, 0, contact_work, loss, hold)

@@ -30,7 +30,7 @@ class Window:
     u: Array  #: (n, 2) of the displacement [m s]
     q: Array  #: (n, 3) [m s], [rad s]
     push: Array  #: (loads, 2) impulse of each load along x and z [N s]
-    pull: float = 0.0  #: impulse along x that held nodes take from cells that are no springs [N s]
+    hold: float = 0.0  #: impulse along x of the held nodes on the sheet, less what loads bring to them at once [N s]
     held: float = 0.0  #: part of the impulse along x that acts on held nodes [N s]
 
     @classmethod

@@ -19,7 +19,7 @@ COMMON = ("ice", "water", "structure", "contact", "drift", "fracture", "coupling
 MASS, MOMENTUM, ENERGY = 1e-14, 1e-12, 1e-4
 #: residual of the force budget of a window: exact to rounding in steps of the implicit engine; the explicit one takes
 #: what the held edges carry by the trapezoidal rule, which misses the waves of a window in which many cells crack
-OPEN, CLOSING = {"fx": 1e-9, "fz": 1e-9}, {"fx": 0.04, "fz": 5e-4}
+OPEN, CLOSING = {"fx": 1e-9, "fz": 1e-9}, {"fx": 5e-3, "fz": 5e-4}
 #: implicit engine, cells that carry nothing when they have failed
 OPEN_CRACKS = (
     "fracture.cracks='open'",
