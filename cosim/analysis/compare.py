@@ -61,6 +61,7 @@ def to_json(run: RunData, name: str, rows: list[Row]) -> dict[str, Any]:
     return {
         "run": run.name,
         "reference": name,
+        "remark": run.remark or None,
         "features": [_json_row(row) for row in rows],
         "series": None,
         "peaks": shares_at_peak(run),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -56,6 +57,10 @@ def summary(run: RunData) -> dict[str, Any]:
         "version": run.metadata["version"],
         "seed": int(run.metadata["seed"]),
         "overrides": run.overrides,
+        "ended": run.ended,
+        "remark": run.remark or None,
+        "commit": run.metadata["commit"],
+        "libraries": json.loads(run.metadata["libraries"]),
         "simulated_s": float(run.t[-1]) if len(run.t) else 0.0,
         "duration_s": int(run.metadata["duration_ns"]) / NS,
         "windows": len(run.t),

@@ -21,13 +21,25 @@ class RunData:
     """Loads of every window, events and ledger of a run."""
 
     name: str  #: of the file
-    metadata: Mapping[str, str]  #: of the run, see `cosim.recording.writer.run_metadata`
+    metadata: Mapping[str, str]  #: of the run, see `cosim.recording.metadata.run_metadata`
     t_ns: IntArray  #: (n,) end of each window [ns]
     load: Array  #: (n, 3, 3) force on the structure: windows, phases, components [N]
     events: tuple[Event, ...] = ()
     ledger: dict[str, Array] = field(default_factory=dict)  #: (n,) by name; nan where a window has no such term
     texts: Mapping[str, str] = field(default_factory=dict)  #: attachments by name: scenario.toml, reference.toml
     budget: dict[str, Array] = field(default_factory=dict)  #: (n,) by term, see `coupling.budget` [N]; empty if unknown
+    ended: str = "complete"  #: how the run ended, in words if it did not reach its duration
+    cut: bool = False  #: the file ends before its end
+
+    @property
+    def remark(self) -> str:
+        """What a reader must know of a run that is not whole; empty for one that is."""
+        if self.ended == "complete" and not self.cut:
+            return ""
+        held = f"it holds {self.t_ns[-1] / NS:g} of {int(self.metadata['duration_ns']) / NS:g} s"
+        if self.cut:
+            return f"{self.name} is truncated (its run goes on, was killed, or the copy is not whole): {held}"
+        return f"{self.name} is of a run that did not reach its end: {self.ended}; {held}"
 
     @property
     def t(self) -> Array:

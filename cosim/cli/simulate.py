@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cosim.cli.options import JsonOption, ScenarioArgument, SetOption
-from cosim.cli.output import print_json, writable
+from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption
+from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
-from cosim.verify.case import CaseResult
+from cosim.outputs import whole, writable
+
+if TYPE_CHECKING:
+    from cosim.verify.case import CaseResult
 
 
 def run(
     scenario: ScenarioArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
     overrides: SetOption = None,
+    force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Simulate a scenario."""
@@ -26,28 +30,17 @@ def run(
     from cosim.show.console import warn
     from cosim.show.progress import ProgressBar
     from cosim.show.tables import print_run
+    from cosim.watched import simulate
 
     loaded = load_scenario(scenario, overrides or ())
     for text in loaded.warnings:
         warn(text)
     observers: list[Observer] = [ProgressBar()]
     if output is not None:
-        observers.append(Recorder(writable(output)))
-    result = _simulate(loaded, observers)
+        observers.append(Recorder(writable(output, ".mcap", force=force), force=force))
+    result = simulate(loaded, observers)
     result["recording"] = None if output is None else str(output)
     print_json(result) if as_json else print_run(result)
-
-
-def _simulate(scenario: Any, observers: list[Any]) -> dict[str, Any]:
-    """Run and close the observers whatever happens."""
-    from cosim.run import run_scenario
-
-    try:
-        result: dict[str, Any] = run_scenario(scenario, observers).to_json()
-        return result
-    finally:
-        for observer in observers:
-            observer.on_close()
 
 
 def sweep_variants(
@@ -58,22 +51,24 @@ def sweep_variants(
     workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None,
     plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None,
+    force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Run variants of a scenario and put their loads side by side."""
-    from cosim.study import command as command
+    from cosim.study import command
+    from cosim.study.table import Table
 
-    for path in (output, plot):
+    for path, kind in ((output, ".csv"), (plot, ".png")):
         if path is not None:
-            writable(path)
-    content = command.run_sweep(scenario, vary, overrides or (), grid, workers)
-    if output is not None:
-        command.write_csv(content, output)
-    print_json(content) if as_json else command.show(content)
+            writable(path, kind, force=force)
+    with Table(output, force) as table:
+        content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table)
+        print_json(content) if as_json else command.show(content)
     if plot is not None:
         from cosim.show.tornado import tornado
 
-        tornado(content, plot)
+        with whole(plot, ".png") as part:
+            tornado(content, part)
     if content["failed"]:
         raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import sys
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from cosim.show.terminal import Terminal
+
 WIDTH = None if sys.stdout.isatty() else 120  #: a pipe has no width of its own
-stderr = Console(stderr=True)
-stdout = Console(width=WIDTH)
+stderr = Terminal(stderr=True)
+stdout = Terminal(width=WIDTH)
 
 
 def print_line(text: str) -> None:

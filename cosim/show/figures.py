@@ -54,8 +54,12 @@ ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
 
 
 def has_data(title: str, run: RunData) -> bool:
-    """Whether a figure has something to show: a recording may hold no energy balance and no force budget."""
-    needs = {"drift": "drift_work" in run.ledger, "carries": bool(run.budget)}
+    """Whether a figure has something to show: a recording may hold no balances and no force budget."""
+    needs = {
+        "drift": {"drift_work", "energy_residual"} <= set(run.ledger),
+        "carries": bool(run.budget),
+        "left": set(ICE[1:]) <= set(run.ledger),
+    }
     return all(there for word, there in needs.items() if word in title)
 
 

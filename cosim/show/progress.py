@@ -18,9 +18,9 @@ class ProgressBar:
 
     def __init__(self, console: Console | None = None) -> None:
         self._progress = Progress(
-            TextColumn("{task.description}"),
+            TextColumn("{task.description}", markup=False),
             BarColumn(),
-            TextColumn("{task.fields[now]}"),
+            TextColumn("{task.fields[now]}", markup=False),
             TextColumn("{task.fields[rate]}"),
             TextColumn("remaining"),
             TimeRemainingColumn(),

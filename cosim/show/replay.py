@@ -6,6 +6,7 @@ Nothing is converted on disk: the recording is read and sent to a viewer, saved 
 from __future__ import annotations
 
 import time
+import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,12 +16,14 @@ import numpy as np
 import rerun as rr
 
 from cosim.analysis.run_data import RunData
-from cosim.errors import InputError
+from cosim.errors import FailedError, InputError
 from cosim.recording import shapes
-from cosim.recording.reader import messages, read_run
+from cosim.recording.reader import messages
 from cosim.show import pictures
+from cosim.show.console import print_line
 from cosim.show.layout import TIMELINE, blueprint
-from cosim.show.viewer import headless_viewer, wait_until_loaded
+from cosim.show.opening import opened
+from cosim.show.viewer import headless_viewer, screen_viewer, wait_until_loaded, web_viewer
 from coupling.interface import NS, PHASES, Phase
 
 APPLICATION = "cosim"
@@ -30,28 +33,31 @@ TOTAL_RGB = (235, 235, 235)
 def save(recording: Path, out: Path) -> None:
     """Write a rerun file with pictures, curves and layout."""
     with _stream() as stream:
-        run = read_run(recording)
+        run = opened(recording)
         stream.save(out, default_blueprint=blueprint(run))
         send(stream, recording, run)
 
 
 def open_viewer(recording: Path) -> None:
     """Open the viewer on this machine's screen."""
-    with _stream() as stream:
-        run = read_run(recording)
-        stream.spawn(default_blueprint=blueprint(run))
+    run = opened(recording)
+    with screen_viewer() as url, _stream() as stream:
+        stream.connect_grpc(url, default_blueprint=blueprint(run))
         send(stream, recording, run)
 
 
-def serve(recording: Path) -> None:
+def serve(recording: Path, port: int | None = None, browser: bool = True) -> None:
     """Serve viewer and data to a browser on this machine, until interrupted."""
-    with _stream() as stream:
-        run = read_run(recording)
-        url = stream.serve_grpc(default_blueprint=blueprint(run))
-        send(stream, recording, run)
-        rr.serve_web_viewer(connect_to=url, open_browser=True)
-        while True:
-            time.sleep(1)
+    run = opened(recording)
+    with web_viewer(port) as (url, page, process):
+        with _stream() as stream:
+            stream.connect_grpc(url, default_blueprint=blueprint(run))
+            send(stream, recording, run)
+        print_line(f"{page}\nthis machine only; Ctrl-C ends it")
+        if browser:
+            webbrowser.open(page)
+        code = process.wait()
+    raise FailedError(f"the viewer ended by itself (exit code {code}); try again, or save a .rrd with --save")
 
 
 def screenshot(
@@ -61,7 +67,7 @@ def screenshot(
 
     ``fade`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
     """
-    run = read_run(recording)
+    run = opened(recording)
     at = float(run.t[-1]) if at is None else at
     if not 0 <= at <= run.t[-1]:
         raise InputError(f"--time {at:g}: outside of the run; give 0 to {run.t[-1]:g} s")

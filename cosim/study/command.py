@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from rich import box
@@ -12,10 +10,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from cosim.scenario.finding import locate
 from cosim.scenario.loading import load_scenario
 from cosim.show.console import print_line, stderr, stdout, warn
-from cosim.study.sweep import COMPONENTS, RESULTS, Row, sweep
-from cosim.study.variants import Variant, parse_axis, variants
+from cosim.signals import StoppedError
+from cosim.study.sweep import Row, sweep
+from cosim.study.table import Table as TableFile
+from cosim.study.variants import parse_axis, variants
 
 COLUMNS = (
     "variant",
@@ -33,46 +34,50 @@ COLUMNS = (
 )
 
 
-def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int) -> dict[str, Any]:
-    """All variants with a progress bar; the content of ``--json``."""
+def run_sweep(
+    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: TableFile
+) -> dict[str, Any]:
+    """All variants with a progress bar, written to ``table`` as they end; the content of ``--json``.
+
+    If it is stopped, what has ended until then is shown.
+    """
     axes = [parse_axis(text) for text in vary]
-    base = load_scenario(scenario, overrides)
+    file = locate(scenario).resolve()  # once: every process reads the same file
+    base = load_scenario(file, overrides)
     for text in base.warnings:
         warn(text)
+    keys = [axis.key for axis in axes]
+    content = {"scenario": base.title, "overrides": list(overrides), "keys": keys, "grid": grid}
     chosen = variants(axes, grid)
+    rows: list[Row] = []
+    try:
+        with _progress() as progress:
+            task = progress.add_task(base.title, total=len(chosen))
+
+            def done(row: Row, ended: list[Row]) -> None:
+                progress.advance(task)
+                what = row["error"] or f"Fx {row['fx_peak'] / 1e6:.2f} MN, Fz {row['fz_peak'] / 1e6:.2f} MN"
+                progress.console.print(f"{row['variant']}: {what}", highlight=False, soft_wrap=True)
+                rows[:] = ended
+                table.write(keys, ended)
+
+            sweep(str(file), overrides, chosen, workers, done)
+    except StoppedError:
+        if rows:
+            show({**content, "variants": rows})
+        raise
+    return {**content, "failed": sum(row["error"] is not None for row in rows), "variants": rows}
+
+
+def _progress() -> Progress:
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("variants, remaining"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=stderr, transient=True) as progress:
-        task = progress.add_task(base.title, total=len(chosen))
-
-        def done(variant: Variant, row: Row) -> None:
-            progress.advance(task)
-            what = row.get("error") or f"Fx {row['fx_peak'] / 1e6:.2f} MN, Fz {row['fz_peak'] / 1e6:.2f} MN"
-            progress.console.print(f"{variant.name}: {what}", highlight=False, markup=False, soft_wrap=True)
-
-        rows = sweep(scenario, overrides, chosen, workers, done)
-    return {
-        "scenario": base.title,
-        "overrides": list(overrides),
-        "keys": [axis.key for axis in axes],
-        "grid": grid,
-        "failed": sum(row["error"] is not None for row in rows),
-        "variants": rows,
-    }
-
-
-def write_csv(content: dict[str, Any], out: Path) -> None:
-    """One line for each variant: name, varied keys (empty: as in the base), results in SI units, ratios, error."""
-    names = ["variant", *content["keys"], *RESULTS, *(f"{c}_ratio" for c in COMPONENTS), "error"]
-    with out.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(content["variants"])
+    return Progress(*columns, console=stderr, transient=True)
 
 
 def show(content: dict[str, Any]) -> None:

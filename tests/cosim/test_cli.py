@@ -1,6 +1,7 @@
 """The command line: exit codes, one line for each error, one JSON object for --json."""
 
 import json
+import signal
 import subprocess
 import sys
 import types
@@ -8,6 +9,7 @@ import types
 import pytest
 
 from cosim.cli import main
+from cosim.recording.reader import read_run
 from coupling.interface import SimulationError
 
 FLOE = "van_vliet_2018_floe_165m"
@@ -20,7 +22,16 @@ def truncated(run_file, tmp_path):
     return path
 
 
-def test_bad_input_is_exit_2_and_one_line(cosim, truncated, tmp_path):
+@pytest.fixture
+def damaged(run_file, tmp_path):
+    path = tmp_path / "damaged.mcap"
+    data = bytearray(run_file.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+    return path
+
+
+def test_bad_input_is_exit_2_and_one_line(cosim, damaged, tmp_path):
     text = tmp_path / "text.mcap"
     text.write_text("hello")
     for arguments, says in [
@@ -30,9 +41,10 @@ def test_bad_input_is_exit_2_and_one_line(cosim, truncated, tmp_path):
         (("run", FLOE, "-o", tmp_path / "no/x.mcap"), "folder"),
         (("compare", tmp_path / "no.mcap"), "no such recording"),
         (("compare", text), "not an MCAP"),
-        (("compare", truncated), "cosim recover"),
-        (("info", truncated), "cosim recover"),
-        (("replay", truncated, "--save", tmp_path / "x.rrd"), "cosim recover"),
+        (("compare", damaged), "cosim recover"),
+        (("info", damaged), "cosim recover"),
+        (("report", damaged, "-o", tmp_path / "x.html"), "cosim recover"),
+        (("replay", damaged, "--save", tmp_path / "x.rrd"), "cosim recover"),
         (("replay", text, "--web", "--save", "x.rrd"), "exclude"),
         (("replay", text, "--time", "3"), "--screenshot"),
         (("recover", text), "not an MCAP"),
@@ -86,15 +98,17 @@ def test_recover(cosim, truncated, tmp_path):
 
 @pytest.fixture
 def fake_run(monkeypatch, synthetic):
-    """Replace the simulation by synthetic frames; ``fail_at`` raises in that window."""
+    """Replace the simulation by synthetic frames; ``fail_at`` raises in that window, ``signal_at`` sends signals."""
 
-    def install(fail_at=None, error=None):
+    def install(fail_at=None, error=None, signal_at=(-1,)):
         def run_scenario(scenario, observers, stop=None):
             for observer in observers:
                 observer.on_start(synthetic.run_info(scenario))
             for k, frame in enumerate(synthetic.frames(scenario)):
                 if k == fail_at:
                     raise error
+                for number in signal_at[1:] if k == signal_at[0] else ():
+                    signal.raise_signal(number)
                 for observer in observers:
                     observer.on_frame(frame)
             return types.SimpleNamespace(to_json=lambda: result(scenario))
@@ -147,13 +161,38 @@ def test_a_failed_run_is_exit_1_and_keeps_its_recording(cosim, fake_run, tmp_pat
     assert (code, out) == (1, "")
     assert err.splitlines()[-1] == f"cosim: {line}"
     assert "Traceback" not in err
-    assert json.loads(cosim("info", tmp_path / "run.mcap", "--json")[1])["windows"] == 30
+    content = json.loads(cosim("info", tmp_path / "run.mcap", "--json")[1])
+    assert (content["windows"], content["ended"]) == (30, line)
 
 
-def test_an_interrupted_run_keeps_its_recording(cosim, fake_run, tmp_path):
-    fake_run(fail_at=30, error=KeyboardInterrupt())
-    assert cosim("run", FLOE, *SHORT, "-o", tmp_path / "run.mcap")[0] == 130
-    assert cosim("info", tmp_path / "run.mcap")[0] == 0
+@pytest.mark.parametrize(("number", "name"), [(signal.SIGINT, "Ctrl-C"), (signal.SIGTERM, "SIGTERM")])
+def test_a_signal_ends_a_run_after_its_window(cosim, fake_run, tmp_path, number, name):
+    path = tmp_path / "run.mcap"
+    fake_run(signal_at=(30, number))
+    code, out, err = cosim("run", FLOE, *SHORT, "-o", path, "--json")
+    assert (code, out) == (128 + number, "")
+    assert err.splitlines()[-1] == (
+        f"cosim: stopped by {name} after 1.55 of 12 s; {path} holds what was simulated until then"
+    )
+    run = read_run(path)
+    assert len(run.t_ns) == 31
+    assert not run.cut
+    assert run.ended == f"stopped by {name} after 1.55 of 12 s"
+    code, out, err = cosim("info", path, "--json")
+    assert (code, json.loads(out)["ended"]) == (0, run.ended)
+    assert err.startswith("warning: run.mcap is of a run that did not reach its end: stopped by")
+    assert cosim("report", path, "-o", tmp_path / "r.html")[0] == 0
+    assert f"<b>Not a whole run:</b> run.mcap is of a run that did not reach its end: {run.ended}" in (
+        tmp_path / "r.html"
+    ).read_text("utf-8")
+
+
+def test_a_second_signal_does_not_wait_for_the_window(cosim, fake_run, tmp_path):
+    fake_run(signal_at=(30, signal.SIGINT, signal.SIGTERM))
+    code, _, err = cosim("run", FLOE, *SHORT, "-o", tmp_path / "run.mcap")
+    assert (code, err.splitlines()[-1].split(";")[0]) == (143, "cosim: stopped by SIGTERM")
+    assert len(read_run(tmp_path / "run.mcap").t_ns) == 30
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
 
 
 def test_an_unexpected_error_is_one_line_and_the_traceback_is_there_on_demand(cosim, fake_run, monkeypatch):
