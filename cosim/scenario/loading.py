@@ -26,7 +26,7 @@ from cosim.scenario.scenario import Scenario
 def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     """Read a scenario folder, a TOML file, or a shipped scenario by name; ``overrides`` are ``a.b=v`` texts."""
     file = locate(path)
-    text, raw = _read(file)
+    text, raw = read(file)
     overrides = tuple(overrides)
     overridden = {apply(raw, item) for item in overrides}
     try:
@@ -37,7 +37,7 @@ def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     return Scenario(name, text, raw, model, overrides, file.parent, _warnings(model))
 
 
-def _read(file: Path, inner: tuple[Path, ...] = ()) -> tuple[str, dict[str, Any]]:
+def read(file: Path, inner: tuple[Path, ...] = ()) -> tuple[str, dict[str, Any]]:
     """Text and tables of a file on top of those of its ``base``, a path beside it: for what cases have in common."""
     if file.resolve() in inner:
         raise ScenarioError(f"{file}: is its own base; leave the key base out of one of the files")
@@ -52,7 +52,7 @@ def _read(file: Path, inner: tuple[Path, ...] = ()) -> tuple[str, dict[str, Any]
     under = file.parent / base if isinstance(base, str) else file
     if not isinstance(base, str) or not under.is_file():
         raise ScenarioError(f"{file}: base = {base!r} is no file; give a path from the folder of this file")
-    common, table = _read(under, (*inner, file.resolve()))
+    common, table = read(under, (*inner, file.resolve()))
     return f"{common}\n# ---- {file.name} ----\n{text}", _merged(table, raw)
 
 

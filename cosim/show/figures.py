@@ -1,7 +1,4 @@
-"""Figures of a recorded run: loads by phase, masses, where the energy went.
-
-They are drawn on a figure of matplotlib (extra ``report``).
-"""
+"""Figures of a recorded run: loads by phase, masses, where the energy went."""
 
 from __future__ import annotations
 

@@ -1,11 +1,10 @@
-"""Tables of the terminal: end of a run, recordings, comparison, scenarios."""
+"""Tables of the terminal: end of a run, recordings, comparison."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from rich.table import Table
-from rich.text import Text
 
 from cosim.analysis.compare import Row
 from cosim.show.cells import compare_cells, number
@@ -100,12 +99,3 @@ def print_compare(title: str, rows: list[Row]) -> None:
     stdout.print(compare_table(title, rows))
     for row in rows:
         stdout.print(f"{row.feature.name}: {row.feature.source}", highlight=False, markup=False, soft_wrap=True)
-
-
-def print_scenarios(rows: list[dict[str, Any]]) -> None:
-    """`cosim list`."""
-    table = new_table("scenario", "event", "s", title="Scenarios")
-    table.columns[1].header = Text("what")
-    for row in rows:
-        table.add_row(row["name"], row["title"], f"{row['duration_s']:g}")
-    stdout.print(table)

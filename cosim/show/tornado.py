@@ -1,35 +1,25 @@
-"""Picture of a sweep: how far each value moves the largest load away from the base.
-
-Needs the extra ``report`` (matplotlib).
-"""
+"""Picture of a sweep: how far each value moves the largest load away from the base."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from cosim.errors import FailedError
 from cosim.study.sweep import Row
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 def tornado(content: dict[str, Any], out: Path) -> None:
     """Peaks of Fx and Fz of every variant as bars from the base, the widest key on top."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        text = f"{error.name} is missing: install the extra, for example `uv sync --extra report`"
-        raise FailedError(text) from error
     rows = [row for row in content["variants"] if row["error"] is None and row["variant"] != "base"]
     base = content["variants"][0]
     if base["error"] is not None or not rows:
         raise FailedError(f"{out}: not drawn: it needs the base and at least one variant that ran")
     groups = _by_key(rows, content["keys"])
     figure = Figure(figsize=(9.0, 1.2 + 0.32 * len(rows) + 0.15 * len(groups)), layout="constrained")
-    FigureCanvasAgg(figure)
     for ax, c in zip(figure.subplots(1, 2, sharey=True), ("fx", "fz"), strict=True):
         _bars(ax, groups, float(base[f"{c}_peak"]) / 1e6, c)
     figure.suptitle(f"{content['scenario']}: largest load, bars begin at the base", fontsize=10)
