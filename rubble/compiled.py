@@ -65,10 +65,12 @@ def _prepared(home: Path, key: str) -> bool:
 
 
 def _say_that_nothing_is_kept() -> None:
-    """One note for all packages: it is booked where numba is, and given once."""
+    """One note for all packages: that it was given is booked where numba is."""
+    if vars(numba).setdefault("_brash_has_said", False):
+        return
+    vars(numba)["_brash_has_said"] = True
     text = "compiled kernels are not kept, every run compiles anew: set NUMBA_CACHE_DIR to a folder that can be written"
-    booked = vars(numba).setdefault("__warningregistry__", {})
-    warnings.warn_explicit(text, RuntimeWarning, "brash", 0, registry=booked)
+    warnings.warn_explicit(text, RuntimeWarning, "brash", 0)
 
 
 _FOLDER = cache_folder(PACKAGE)

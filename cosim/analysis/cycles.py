@@ -7,6 +7,7 @@ fed into the rubble and cleared from it.
 from __future__ import annotations
 
 import numpy as np
+
 from cosim.analysis.instants import Kinds, between, encounters, evenly, events_of, first_contact, largest
 from cosim.analysis.run_data import RunData
 from coupling.interface import NS, Array

@@ -1,15 +1,21 @@
 """The command line: exit codes, one line for each error, one JSON object for --json."""
 
 import json
+import os
+import re
 import signal
 import subprocess
 import sys
 import types
+from pathlib import Path
 
 import pytest
 
 from cosim.cli import main
 from cosim.recording.reader import read_run
+from cosim.scenario.finding import locate
+from cosim.study.command import run_sweep
+from cosim.study.table import Table
 from coupling.interface import SimulationError
 
 FLOE = "van_vliet_2018_floe_165m"
@@ -206,11 +212,78 @@ def test_an_unexpected_error_is_one_line_and_the_traceback_is_there_on_demand(co
         main(["run", FLOE, *SHORT])
 
 
-def test_help_imports_nothing_slow():
+@pytest.mark.parametrize(("command", "besides"), [("--help", ("numpy", "pydantic")), ("list", ())])
+def test_help_and_list_import_nothing_slow(command, besides):
+    slow = ("numba", "rerun", "matplotlib", "scipy", "pymunk", "pint", *besides)
     code = (
-        "import sys\nfrom cosim.cli import main\ntry:\n    main(['--help'])\nexcept SystemExit: pass\n"
-        "slow = {'numba', 'rerun', 'matplotlib', 'scipy', 'pymunk', 'pint'} & set(sys.modules)\n"
+        f"import sys\nfrom cosim.cli import main\ntry:\n    main(['{command}'])\nexcept SystemExit: pass\n"
+        f"slow = set({slow}) & set(sys.modules)\n"
         "assert not slow, slow"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
+
+
+def test_version_and_module():
+    done = subprocess.run([sys.executable, "-m", "cosim", "--version"], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert re.fullmatch(r"cosim \d+\.\d+\.\d+ \(([0-9a-f]{40}\+?|unknown)\)\n", done.stdout)
+
+
+def test_shells_complete_commands_and_scenarios():
+    def completed(words):
+        environment = {**os.environ, "_COSIM_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": "2"}
+        environment["COMP_CWORD"] = str(len(words.split()) - 1)
+        command = [sys.executable, "-c", "from cosim.cli import main; main()"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, env=environment)
+        assert done.stderr == ""
+        return done.stdout.split()
+
+    assert {"replay", "report", "recover"} <= set(completed("cosim re"))
+    assert completed("cosim run icef") == ["icefloe_gla_upward_cone"]
+
+
+def scenario_in(folder, name, title):
+    (folder / name).mkdir(parents=True)
+    (folder / name / "scenario.toml").write_text(f'[scenario]\ntitle = "{title}"\nduration = "3 s"\n')
+
+
+def test_a_name_here_comes_before_one_of_the_project_and_a_bad_scenario_blocks_nothing(cosim, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scenario_in(tmp_path / "scenarios", FLOE, "mine")
+    (tmp_path / "scenarios" / "broken").mkdir()
+    (tmp_path / "scenarios" / "broken" / "scenario.toml").write_text("[scenario\n")
+    (tmp_path / "scenarios" / "empty").mkdir()
+    (tmp_path / "scenarios" / "empty" / "scenario.toml").write_text("x = 1")
+    scenario_in(tmp_path / "scenarios", "odd", "[/x] odd")
+    assert locate(FLOE).resolve() == tmp_path / "scenarios" / FLOE / "scenario.toml"
+    code, out, err = cosim("list", "--json")
+    rows = {row["name"]: row for row in json.loads(out)["scenarios"]}
+    assert (code, err, rows[FLOE]["title"], rows[FLOE]["duration_s"]) == (0, "", "mine", 3.0)
+    assert rows["upward_plane"]["duration_s"] == 150.0
+    assert "not valid TOML" in rows["broken"]["fault"]
+    assert "scenario is missing" in rows["empty"]["fault"]
+    code, out, err = cosim("list")
+    assert (code, err) == (0, "")
+    assert "[/x] odd" in out
+    assert "cannot be read, see below" in out
+    assert "not valid TOML" in out
+    scenario_in(tmp_path, FLOE, "nearest")  # a folder of that name comes before all
+    assert locate(FLOE).resolve() == tmp_path / FLOE / "scenario.toml"
+
+
+def test_all_processes_of_a_sweep_read_the_same_file(tmp_path, monkeypatch):
+    """The order of names is one thing; the file is looked up once."""
+    monkeypatch.chdir(tmp_path)
+    text = (Path(__file__).parents[2] / "scenarios" / FLOE / "scenario.toml").read_text("utf-8")
+    (tmp_path / "scenarios" / FLOE).mkdir(parents=True)
+    (tmp_path / "scenarios" / FLOE / "scenario.toml").write_text(text.replace("165 m floe", "mine"))
+    seen = []
+
+    def spy(scenario, overrides, variants, workers, done):
+        seen.append(scenario)
+
+    monkeypatch.setattr("cosim.study.command.sweep", spy)
+    content = run_sweep(FLOE, ["ice.thickness=1 m"], (), False, 2, Table(None))
+    assert content["scenario"].startswith("mine")
+    assert seen == [str(tmp_path / "scenarios" / FLOE / "scenario.toml")]

@@ -76,7 +76,7 @@ def test_many_damaged_recordings(whole, tmp_path, capsys):
 
 
 def test_no_bit_of_the_metadata_can_be_flipped_in_silence(whole, tmp_path):
-    """A bit of each byte of the title, the times and the rest; in a file without its end the seal of the record counts."""
+    """One bit of every byte; in a file without its end the seal of the record itself must do."""
     end = whole.bytes.index(b"attachments") + 90
     path = tmp_path / "x.mcap"
     for k, at in enumerate(range(end - 1100, end)):
