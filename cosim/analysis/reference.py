@@ -7,11 +7,13 @@ range.
 from __future__ import annotations
 
 import inspect
+import math
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
+from pydantic import TypeAdapter, ValidationError
 from pydantic_core import PydanticCustomError
 
 from cosim.analysis.features import QUANTITIES
@@ -19,6 +21,7 @@ from cosim.analysis.run_data import COMPONENTS
 from cosim.errors import InputError
 from cosim.nearest import hint
 from cosim.scenario.units import Unit, to_si
+from coupling.interface import PHASES
 
 OWN_KEYS = ("name", "quantity", "unit", "thesis", "measured", "source", "tolerance", "over")
 
@@ -56,7 +59,11 @@ def load_reference(path: str | Path) -> Reference:
     file = file / "reference.toml" if file.is_dir() else file
     if not file.is_file():
         raise FeatureError(f"{file}: no such reference; give a reference.toml or a folder that holds one")
-    return parse_reference(file.read_text(encoding="utf-8"), str(file))
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FeatureError(f"{file}: not UTF-8: {error}; save it as UTF-8") from None
+    return parse_reference(text, str(file))
 
 
 def parse_reference(text: str, origin: str) -> Reference:
@@ -71,11 +78,16 @@ def parse_reference(text: str, origin: str) -> Reference:
     return Reference(str(data.get("title", "")), tuple(_feature(entry, origin) for entry in features))
 
 
-def _feature(entry: dict[str, Any], origin: str) -> Feature:
+def _feature(entry: Any, origin: str) -> Feature:
+    if not isinstance(entry, dict):
+        raise FeatureError(f"{origin}: feature = {entry!r}: not a table; write [[feature]] and its keys below")
     where = f"{origin}: feature {entry.get('name', '?')}"
     for key in ("name", "quantity", "unit", "source"):
-        if key not in entry:
-            raise FeatureError(f"{where}: {key} is missing; add it")
+        if not isinstance(entry.get(key), str):
+            raise FeatureError(f"{where}: {key} is missing or no text; add it")
+    tolerance = entry.get("tolerance")
+    if tolerance is not None and (type(tolerance) not in (int, float) or not 0.0 <= tolerance < math.inf):
+        raise FeatureError(f"{where}: tolerance = {tolerance!r}: give a number >= 0, for example 0.1")
     quantity = entry["quantity"]
     if quantity not in QUANTITIES:
         raise FeatureError(f"{where}: unknown quantity {quantity!r}; {hint(quantity, QUANTITIES)}")
@@ -88,7 +100,7 @@ def _feature(entry: dict[str, Any], origin: str) -> Feature:
         entry["unit"],
         entry["source"],
         arguments,
-        tolerance=entry.get("tolerance"),
+        tolerance=tolerance,
         over=_time(f"{where}: over", entry.get("over")),
         **ranges,
     )
@@ -103,12 +115,18 @@ def _time(where: str, value: Any) -> float | None:
 
 def _check_arguments(where: str, quantity: str, arguments: dict[str, Any]) -> None:
     parameters = inspect.signature(QUANTITIES[quantity]).parameters
+    hints = get_type_hints(QUANTITIES[quantity])
     known = tuple(parameters)[1:]
-    for key in arguments:
+    for key, value in arguments.items():
         if key not in known:
             raise FeatureError(f"{where}: unknown key {key!r}; {hint(key, known + OWN_KEYS)}")
-    if arguments.get("component", "fx") not in COMPONENTS:
-        raise FeatureError(f"{where}: component = {arguments['component']!r}: use one of {', '.join(COMPONENTS)}")
+        try:
+            TypeAdapter(hints[key]).validate_python(value, strict=True)
+        except ValidationError as error:
+            raise FeatureError(f"{where}: {key} = {value!r}: {error.errors()[0]['msg'].lower()}") from None
+    for key, names in (("component", COMPONENTS), ("phase", PHASES)):
+        if key in arguments and arguments[key] not in names:
+            raise FeatureError(f"{where}: {key} = {arguments[key]!r}: use one of {', '.join(names)}")
     if "event" in known and parameters["event"].default is inspect.Parameter.empty and "event" not in arguments:
         raise FeatureError(f'{where}: event is missing; add for example event = "split"')
 
@@ -123,4 +141,6 @@ def _range(where: str, value: Any, unit: str) -> tuple[float, float] | None:
         raise FeatureError(f"{where} = {value!r}: {error.message()}") from None
     except ValueError:
         raise FeatureError(f"{where} = {value!r}: give one value or a pair") from None
+    if low > high:
+        raise FeatureError(f"{where} = {value!r}: from high to low; turn the pair round")
     return low, high

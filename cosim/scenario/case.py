@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pydantic import Field
+
 from cosim.scenario.section import Section
 from cosim.scenario.units import (
     Time,
@@ -14,7 +16,7 @@ class Case(Section):
     title: str  #: one line, shown by every command
     description: str = ""  #: what happens in the case, and where it is from
     duration: Time  #: simulated time [s]
-    seed: int = 0  #: of every random number of the run
+    seed: int = Field(0, ge=0)  #: of every random number of the run
 
 
 class Recording(Section):

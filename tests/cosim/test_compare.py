@@ -117,7 +117,7 @@ def test_ratio(simulated, value, expected):
 def test_json_of_a_comparison(run):
     name, reference = compare.reference_of(run, None)
     content = compare.to_json(run, name, compare.compare(run, reference))
-    assert set(content) == {"run", "reference", "features", "series", "peaks"}
+    assert set(content) == {"run", "reference", "remark", "features", "series", "peaks"}
     assert content["series"] is None
     by_name = {f["name"]: f for f in content["features"]}
     first = by_name["circumferential_fx"]
