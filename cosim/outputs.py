@@ -2,7 +2,8 @@
 
 * A file is replaced by one of its own kind only, which is told from its first bytes: no input, whichever it is and
   however it is named, is written over.
-* What was simulated (recordings, tables of a sweep) grows at its place and is kept unless the user says ``--force``.
+* What was simulated (recordings, tables of a sweep) grows at its place and is kept; a recording unless the user says
+  ``--force``.
 * What can be drawn again (pages, pictures) is written under another name and then renamed.
 * A file that is being written is locked: a second writer is refused.
 """
@@ -32,7 +33,11 @@ MAGIC = {
     ".html": b"<!doctype html",
     ".csv": b"variant,",
 }
-GROWS = (".mcap", ".csv")  #: they hold what was simulated
+#: kinds that hold what was simulated, and what a user may do about one that exists
+GROWS = {
+    ".mcap": "name another file, or give --force to write over it",
+    ".csv": "name another file, or remove it",
+}
 
 
 def writable(path: Path, kind: str, inputs: Iterable[Path] = (), force: bool = False) -> Path:
@@ -71,7 +76,7 @@ def _replaceable(path: Path, target: Path, kind: str, force: bool) -> None:
     if begins and begins != MAGIC[kind]:
         raise InputError(f"{path}: exists and is no {kind} file, it is not written over; name another file")
     if kind in GROWS and not force:
-        raise InputError(f"{path}: exists and is kept; name another file, or give --force to write over it")
+        raise InputError(f"{path}: exists and is kept; {GROWS[kind]}")
 
 
 def trouble(path: Path, error: OSError) -> FailedError:
@@ -118,6 +123,13 @@ def grow(path: Path, kind: str, force: bool = False) -> IO[bytes]:
         return os.fdopen(number, "wb")
     except OSError as error:
         raise trouble(path, error) from error
+
+
+def drop(path: Path) -> None:
+    """Take a file away that `grow` has opened and that holds nothing; a device stays."""
+    target = resolved(path)
+    if _is_regular(target):
+        target.unlink()
 
 
 def rewrite(file: IO[bytes], content: bytes) -> None:

@@ -22,4 +22,4 @@ ScenarioArgument = Annotated[
 RunArgument = Annotated[Path, typer.Argument(help="recording (.mcap)")]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="A.B=V", help="override a value of the scenario")]
 JsonOption = Annotated[bool, typer.Option("--json", help="one JSON object on standard output")]
-ForceOption = Annotated[bool, typer.Option("--force", help="write over a recording or table that exists")]
+ForceOption = Annotated[bool, typer.Option("--force", help="write over a recording that exists")]

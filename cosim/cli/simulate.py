@@ -51,7 +51,6 @@ def sweep_variants(
     workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None,
     plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None,
-    force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
     """Run variants of a scenario and put their loads side by side."""
@@ -60,8 +59,8 @@ def sweep_variants(
 
     for path, kind in ((output, ".csv"), (plot, ".png")):
         if path is not None:
-            writable(path, kind, force=force)
-    with Table(output, force) as table:
+            writable(path, kind)
+    with Table(output) as table:
         content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table)
         print_json(content) if as_json else command.show(content)
     if plot is not None:

@@ -24,7 +24,7 @@ MAGIC = b"\x89MCAP0\r\n"
 FOOTER = Opcode.FOOTER.to_bytes(1, "little") + (20).to_bytes(8, "little")  #: how the last record begins
 TAIL = len(FOOTER) + 20 + len(MAGIC)
 #: what a file may unpack to: as much as is harmless, or so many times its size (recordings: 3 to 20)
-HARMLESS, EXPANSION = 2**26, 100
+HARMLESS, EXPANSION = 2**24, 100
 PASSED = (Opcode.HEADER, Opcode.MESSAGE_INDEX)  #: outside of chunks; all that is shown stands elsewhere
 
 

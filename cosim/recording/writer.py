@@ -17,7 +17,7 @@ from mcap_protobuf.schema import build_file_descriptor_set
 
 from cosim.errors import InputError
 from cosim.observer import RunInfo
-from cosim.outputs import grow, trouble
+from cosim.outputs import drop, grow, trouble
 from cosim.recording.channels import CHANNELS, Channel, When
 from cosim.recording.metadata import COMPLETE, END, RUN, run_metadata, sealed
 from cosim.scenario.scenario import Scenario
@@ -69,8 +69,13 @@ class Recorder:
         self._t_ns = frame.t_ns
 
     def on_close(self) -> None:
-        """Finish the file; what was written until now can be read."""
+        """Finish the file; what was written until now can be read. A file without a window is taken away."""
         if self._file is None:
+            return
+        if self._t_ns == 0:
+            self._do(self._file.close)
+            self._file = None
+            drop(self.path)
             return
         ended = COMPLETE if self._t_ns >= self._info.duration_ns else self.ending
         self._do(self._writer.add_metadata, END, sealed({"ended": ended}))

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import rerun as rr
+from google.protobuf.message import DecodeError
 
 from cosim.analysis.run_data import RunData
 from cosim.errors import FailedError, InputError
@@ -88,10 +89,22 @@ def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
     for event in run.events:
         stream.set_time(TIMELINE, duration=event.t_ns / NS)
         stream.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
-    for mesh in pictures.meshes(messages(recording, pictures.TOPICS), float(run.metadata["thickness_m"])):
+    for mesh in _meshes(recording, run):
         stream.set_time(TIMELINE, duration=mesh.t_ns / NS)
         stream.log(f"world/{mesh.name}", _mesh(mesh), static=mesh.name == "structure")
     stream.flush()
+
+
+def _meshes(recording: Path, run: RunData) -> Iterator[pictures.Mesh]:
+    stored = messages(recording, pictures.TOPICS)
+    try:
+        yield from pictures.meshes(stored, float(run.metadata["thickness_m"]))
+    except (DecodeError, ValueError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"{recording}: a picture in it cannot be read: {error}; give a file that `cosim run` wrote"
+        ) from None
 
 
 def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:

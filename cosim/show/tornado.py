@@ -22,7 +22,7 @@ def tornado(content: dict[str, Any], out: Path) -> None:
     figure = Figure(figsize=(9.0, 1.2 + 0.32 * len(rows) + 0.15 * len(groups)), layout="constrained")
     for ax, c in zip(figure.subplots(1, 2, sharey=True), ("fx", "fz"), strict=True):
         _bars(ax, groups, float(base[f"{c}_peak"]) / 1e6, c)
-    figure.suptitle(f"{content['scenario']}: largest load, bars begin at the base", fontsize=10)
+    figure.suptitle(f"{content['scenario']}: largest load, bars begin at the base", fontsize=10, parse_math=False)
     figure.savefig(out, dpi=130)
 
 
@@ -53,7 +53,7 @@ def _bars(ax: Axes, groups: list[list[Row]], base: float, component: str) -> Non
             place += 1.0
         place += 0.5
     ax.axvline(base, color="k", lw=0.8)
-    ax.set_yticks([p for p, _ in labels], [name for _, name in labels], fontsize=8)
+    ax.set_yticks([p for p, _ in labels], [name for _, name in labels], fontsize=8, parse_math=False)
     ax.set_xlabel(f"{component.capitalize()} [MN], base {base:.2f}")
     ax.margins(x=0.2)
     ax.grid(axis="x", alpha=0.3)

@@ -29,14 +29,14 @@ class Table:
     A file that takes no more does not end the sweep: its table is shown, and the file is complained of at the end.
     """
 
-    def __init__(self, path: Path | None, force: bool = False) -> None:
-        self._path, self._force = path, force
+    def __init__(self, path: Path | None) -> None:
+        self._path = path
         self._file: IO[bytes] | None = None
         self._trouble: FailedError | None = None
 
     def __enter__(self) -> Self:
         if self._path is not None:
-            self._file = grow(self._path, ".csv", self._force)
+            self._file = grow(self._path, ".csv")
         return self
 
     def write(self, keys: Sequence[str], rows: Sequence[Row]) -> None:

@@ -44,6 +44,7 @@ def test_bad_input_is_exit_2_and_one_line(cosim, damaged, tmp_path):
         (("run", "nowhere"), "no such scenario"),
         (("run", FLOE, "--set", "ice.thickness=-1 m"), "greater than zero"),
         (("run", FLOE, "--set", "ice.thicknes=1 m"), "did you mean"),
+        (("run", FLOE, "--set", "scenario.seed=-1"), "greater than or equal to 0"),
         (("run", FLOE, "-o", tmp_path / "no/x.mcap"), "folder"),
         (("compare", tmp_path / "no.mcap"), "no such recording"),
         (("compare", text), "not an MCAP"),

@@ -1,6 +1,8 @@
 """Nothing is destroyed: inputs, recordings and foreign files stay, what is written appears whole or not at all."""
 
+import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +14,7 @@ from cosim.outputs import grow, rewrite, whole, writable
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
+from cosim.signals import StoppedError
 
 FLOE = "van_vliet_2018_floe_165m"
 SCENARIO = Path(__file__).parents[2] / "scenarios" / FLOE / "scenario.toml"
@@ -65,7 +68,6 @@ def test_no_command_writes_over_the_recording_that_it_reads(cosim, recording, co
         ("run", "{case}", "-o", "{itself}"),
         ("run", "{case}", "-o", "{itself}", "--force"),
         ("sweep", "{case}", "--vary", "ice.thickness=1 m", "-o", "{itself}"),
-        ("sweep", "{case}", "--vary", "ice.thickness=1 m", "-o", "{itself}", "--force"),
         ("sweep", "{case}", "--vary", "ice.thickness=1 m", "--plot", "{itself}"),
         ("report", "{recording}", "-o", "{itself}"),
         ("replay", "{recording}", "--save", "{itself}"),
@@ -210,6 +212,7 @@ import synthetic
 from cosim.errors import FailedError
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
+from cosim.signals import StoppedError
 
 resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
 scenario = load_scenario("van_vliet_2018_floe_165m", ["scenario.duration='12 s'", "sheet.nodes=[40,40]"])
@@ -262,3 +265,47 @@ def test_a_table_grows_and_holds_what_is_there(tmp_path):
             grow(path, ".csv", force=True)
     with pytest.raises(InputError, match="exists and is kept"):
         grow(path, ".csv")
+
+
+def test_a_recording_without_a_window_does_not_stay(synthetic, tmp_path):
+    path = tmp_path / "run.mcap"
+    with Recorder(path) as recorder:
+        recorder.on_start(synthetic.run_info(load_scenario(FLOE, ["scenario.duration='1 s'", "sheet.nodes=[40,40]"])))
+        assert path.exists()
+    assert not path.exists()
+
+
+def row(variants, done, error=None):
+    """A sweep whose variants end at once, or with an error after the first."""
+    load = {f"{c}_peak": 1e6 for c in ("fx", "fz", "f")} | {f"{c}_time": 1.0 for c in ("fx", "fz", "f")}
+    phases = {f"{p}_fx_peak": 1.0 for p in ("breaking", "rotating", "sliding")}
+    rows = []
+    for variant in variants:
+        values = {**load, **phases, "fx_mean": 1.0, "wall_s": 1.0, "simulated_s": 2.0, "error": None, "fx_ratio": 1.0}
+        rows.append({"variant": variant.name, **dict(variant.changes), **values, "fz_ratio": 1.0})
+        done(rows[-1], rows)
+        if error:
+            raise error
+    return rows
+
+
+@needs_full
+def test_a_sweep_shows_its_table_whatever_happens_to_the_file(cosim, case, monkeypatch, tmp_path):
+    monkeypatch.setattr("cosim.study.command.sweep", lambda s, o, variants, w, done: row(variants, done))
+    code, out, err = cosim("sweep", case, "--vary", "ice.thickness=1 m,2 m", "-o", FULL)
+    assert code == 1
+    assert "ice.thickness = 2 m" in out
+    assert err.splitlines()[-1] == "cosim: /dev/full: No space left on device; free space or write elsewhere"
+    content = json.loads(cosim("sweep", case, "--vary", "ice.thickness=1 m,2 m", "-o", FULL, "--json")[1])
+    assert len(content["variants"]) == 3
+
+
+def test_a_sweep_that_is_stopped_shows_what_has_ended(cosim, case, monkeypatch, tmp_path):
+    stop = StoppedError(signal.SIGTERM)
+    monkeypatch.setattr("cosim.study.command.sweep", lambda s, o, variants, w, done: row(variants, done, stop))
+    code, out, err = cosim("sweep", case, "--vary", "ice.thickness=1 m,2 m", "-o", tmp_path / "t.csv")
+    assert (code, err.splitlines()[-1]) == (143, "cosim: stopped by SIGTERM")
+    assert "base" in out
+    assert (tmp_path / "t.csv").read_text().splitlines()[1].startswith("base,,1000000.0")
+    code, _, err = cosim("sweep", case, "--vary", "ice.thickness=1 m", "-o", tmp_path / "t.csv")
+    assert (code, "exists and is kept" in err) == (2, True)
