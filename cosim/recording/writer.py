@@ -35,6 +35,7 @@ class Recorder:
     def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS, force: bool = False) -> None:
         self.path, self.force = Path(path), force
         self.ending = "it was stopped"  #: why the run ended, if it ends before its duration
+        self.recorded_ns = 0  #: end of the last window in the file
         self._channels = channels
         self._file: IO[bytes] | None = None
         self._writer: Any = None  # its methods carry no types
@@ -45,7 +46,7 @@ class Recorder:
         """Open the file and write all that holds for the whole run."""
         self._info = run_info
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
-        self._cells, self._since_mesh, self._due_ns, self._t_ns = -1, 0, self._every_ns, 0
+        self._cells, self._since_mesh, self._due_ns = -1, 0, self._every_ns
         texts = attachments(run_info.scenario)
         self._file = grow(self.path, ".mcap", self.force)
         self._writer = new_writer(self._file)
@@ -66,18 +67,18 @@ class Recorder:
         if self._is_recorded(frame):
             self._write(frame.t_ns, {When.PICTURE, When.MESH} if self._with_mesh(frame) else {When.PICTURE}, frame)
         self._do(self._writer.flush)
-        self._t_ns = frame.t_ns
+        self.recorded_ns = frame.t_ns
 
     def on_close(self) -> None:
         """Finish the file; what was written until now can be read. A file without a window is taken away."""
         if self._file is None:
             return
-        if self._t_ns == 0:
+        if self.recorded_ns == 0:
             self._do(self._file.close)
             self._file = None
             drop(self.path)
             return
-        ended = COMPLETE if self._t_ns >= self._info.duration_ns else self.ending
+        ended = COMPLETE if self.recorded_ns >= self._info.duration_ns else self.ending
         self._do(self._writer.add_metadata, END, sealed({"ended": ended}))
         self._do(self._writer.finish)
         self._do(self._file.close)

@@ -194,6 +194,13 @@ def test_a_signal_ends_a_run_after_its_window(cosim, fake_run, tmp_path, number,
     ).read_text("utf-8")
 
 
+def test_a_signal_before_the_first_window_leaves_no_recording(cosim, fake_run, tmp_path):
+    fake_run(signal_at=(0, signal.SIGINT, signal.SIGTERM))
+    code, out, err = cosim("run", FLOE, *SHORT, "-o", tmp_path / "run.mcap")
+    assert (code, out, err.splitlines()[-1]) == (143, "", "cosim: stopped by SIGTERM")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_second_signal_does_not_wait_for_the_window(cosim, fake_run, tmp_path):
     fake_run(signal_at=(30, signal.SIGINT, signal.SIGTERM))
     code, _, err = cosim("run", FLOE, *SHORT, "-o", tmp_path / "run.mcap")

@@ -41,11 +41,14 @@ def whole(record, tmp_path_factory):
 def fuzz(whole, folder, examples, capsys):
     path, out = folder / "x.mcap", folder / "y.mcap"
     commands = (("info", path), ("info", path, "--json"), ("compare", path, "--json"), ("recover", path, "-o", out))
+    path.write_bytes(whole.bytes)
+    for command in commands:  # what is loaded at first use takes its time
+        mutations.check(path, whole, command)
     seen = dict.fromkeys((m.__name__ for m in mutations.MUTATIONS), 0)
 
     @settings(
         max_examples=examples,
-        deadline=10_000,  # [ms]
+        deadline=60_000,  # [ms]
         database=None,
         derandomize=True,
         phases=[Phase.generate],
