@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -28,11 +29,11 @@ def replay(
     for path, kind in ((save, ".rrd"), (screenshot, ".png")):
         if path is not None:
             writable(path, kind, [recording])
+    os.environ.setdefault("RUST_LOG", "off")  # rerun's own log; what goes wrong it says to us as well
     from cosim.show import replay as show
 
     if save is not None:
-        with whole(save, ".rrd") as part:
-            show.save(recording, part)
+        show.save(recording, save)
     elif screenshot is not None:
         with whole(screenshot, ".png") as part:
             show.screenshot(recording, part, time)

@@ -18,6 +18,7 @@ from google.protobuf.message import DecodeError
 
 from cosim.analysis.run_data import RunData
 from cosim.errors import FailedError, InputError
+from cosim.outputs import whole
 from cosim.recording import shapes
 from cosim.recording.reader import messages
 from cosim.show import pictures
@@ -33,10 +34,14 @@ TOTAL_RGB = (235, 235, 235)
 
 def save(recording: Path, out: Path) -> None:
     """Write a rerun file with pictures, curves and layout."""
-    with _stream() as stream:
-        run = opened(recording)
-        stream.save(out, default_blueprint=blueprint(run))
-        send(stream, recording, run)
+    run = opened(recording)
+    with whole(out, ".rrd") as part:
+        try:
+            with _stream() as stream:
+                stream.save(part, default_blueprint=blueprint(run))
+                send(stream, recording, run)
+        except RuntimeError as error:  # rerun's only one
+            raise FailedError(f"{out}: {error}; free space or write elsewhere") from error
 
 
 def open_viewer(recording: Path) -> None:

@@ -193,6 +193,11 @@ def test_a_full_disk_is_one_line_that_names_the_file(cosim, recording, tmp_path)
             f"cosim: {link}: No space left on device; free space or write elsewhere\n",
         )
     assert FULL.is_char_device()
+    done = shell(f"ulimit -f 50; cosim replay {recording} --save {tmp_path / 'x.rrd'}")
+    assert (done.returncode, done.stderr.count("\n")) == (1, 1)
+    assert done.stderr.startswith(f"cosim: {tmp_path / 'x.rrd'}: ")
+    assert done.stderr.endswith("; free space or write elsewhere\n")
+    assert list(tmp_path.glob("*x*.rrd")) == []
 
 
 @needs_full
