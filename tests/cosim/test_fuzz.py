@@ -38,6 +38,53 @@ def whole(record, tmp_path_factory):
     return Whole(path.read_bytes(), read_run(path))
 
 
+REFERENCE = (Path(__file__).parents[2] / "scenarios" / "van_vliet_2018_floe_165m" / "reference.toml").read_bytes()
+
+
+def options(examples):
+    return settings(
+        max_examples=examples,
+        deadline=60_000,  # [ms]
+        database=None,
+        derandomize=True,
+        phases=[Phase.generate],
+        suppress_health_check=list(HealthCheck),
+    )
+
+
+def fuzz_references(whole, folder, examples, capsys):
+    """A damaged reference is refused in one line, or compared with; the recording and it stay as they are."""
+    path, recording, refused = folder / "r.toml", folder / "run.mcap", 0
+    recording.write_bytes(whole.bytes)
+
+    @options(examples)
+    @given(st.sampled_from(mutations.MUTATIONS), st.integers(0, 2**32))
+    def one(mutation, seed):
+        nonlocal refused
+        data = bytearray(REFERENCE)
+        mutation(data, random.Random(seed))
+        path.write_bytes(data)
+        code, out, err = mutations.call("compare", recording, path, "--json")
+        assert (path.read_bytes(), recording.read_bytes()) == (bytes(data), whole.bytes)
+        assert (code, out == "", err.count("\n")) in ((0, False, 0), (2, True, 1)), err
+        assert "unexpected" not in err, err
+        refused += code == 2
+
+    one()
+    assert 0.3 * examples < refused < examples
+    with capsys.disabled():
+        print(f"\n{examples} damaged references, {refused} of them refused")
+
+
+def test_damaged_references(whole, tmp_path, capsys):
+    fuzz_references(whole, tmp_path, 100, capsys)
+
+
+@pytest.mark.slow
+def test_many_damaged_references(whole, tmp_path, capsys):
+    fuzz_references(whole, tmp_path, 2_000, capsys)
+
+
 def fuzz(whole, folder, examples, capsys):
     path, out = folder / "x.mcap", folder / "y.mcap"
     commands = (("info", path), ("info", path, "--json"), ("compare", path, "--json"), ("recover", path, "-o", out))
@@ -46,14 +93,7 @@ def fuzz(whole, folder, examples, capsys):
         mutations.check(path, whole, command)
     seen = dict.fromkeys((m.__name__ for m in mutations.MUTATIONS), 0)
 
-    @settings(
-        max_examples=examples,
-        deadline=60_000,  # [ms]
-        database=None,
-        derandomize=True,
-        phases=[Phase.generate],
-        suppress_health_check=list(HealthCheck),
-    )
+    @options(examples)
     @given(st.sampled_from(mutations.MUTATIONS), st.integers(0, 2**32), st.sampled_from(commands))
     def one(mutation, seed, command):
         data = bytearray(whole.bytes)
