@@ -108,7 +108,7 @@ def check(path: Path, whole: Any, command: tuple[Any, ...]) -> None:
     code, out, err = call(*command)
     assert path.read_bytes() == before
     assert "Traceback" not in out + err
-    assert "unexpected" not in err, err
+    assert "cosim: unexpected" not in err, err
     assert err.count("\n") <= 1, err
     assert code in (0, 2), err
     if code:
