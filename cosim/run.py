@@ -10,26 +10,25 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from cosim.analysis.run_data import COMPONENTS
-from cosim.analysis.sustained import SUSTAINED, running_mean
+from cosim.analysis.run_data import AXES, COMPONENTS
+from cosim.analysis.sustained import at_event, running_mean
 from cosim.build import build, run_info
 from cosim.observer import Observer
 from cosim.scenario.scenario import Scenario
-from coupling.interface import NS, PHASES, Array, Event, Frame
+from coupling.interface import NS, PHASES, Array, Event, Frame, IntArray
 from coupling.scheduler import Scheduler
 
 
 class Peaks:
-    """Largest mean load of a window, by component; f is the resultant."""
+    """Largest load, by component; f is the resultant."""
 
-    def __init__(self) -> None:
+    def __init__(self, t_ns: IntArray, load: Array) -> None:
+        """Of loads (n, 3) at the ends of windows (n,)."""
         self.value, self.t_ns = np.zeros(4), np.zeros(4, np.int64)
-
-    def see(self, t_ns: int, load: Array) -> None:
-        """Takes in the load (3,) of a window."""
-        now = np.array([*load, np.linalg.norm(load)])
-        higher = np.abs(now) > np.abs(self.value)
-        self.value[higher], self.t_ns[higher] = now[higher], t_ns
+        if len(load):
+            components = np.column_stack((load, np.linalg.norm(load, axis=1)))
+            k = np.abs(components).argmax(axis=0)
+            self.value, self.t_ns = components[k, range(4)], t_ns[k]
 
     def to_json(self) -> dict[str, dict[str, float]]:
         """``{component: {"value" [N], "time" [s]}}``."""
@@ -39,23 +38,6 @@ class Peaks:
         }
 
 
-class PeaksByPhase:
-    """Peaks of the whole load and of that of each phase."""
-
-    def __init__(self) -> None:
-        self.total, self.of = Peaks(), {p: Peaks() for p in PHASES}
-
-    def see(self, t_ns: int, load: Array) -> None:
-        """Takes in the load (3, 3) of a window, rows by phase."""
-        self.total.see(t_ns, load.sum(axis=0))
-        for phase, part in zip(self.of.values(), load, strict=True):
-            phase.see(t_ns, part)
-
-    def to_json(self) -> dict[str, Any]:
-        """``peaks`` of the whole load and ``peaks_by_phase``."""
-        return {"peaks": self.total.to_json(), "peaks_by_phase": {name: p.to_json() for name, p in self.of.items()}}
-
-
 @dataclass
 class RunResult:
     """What a run came to, in SI units."""
@@ -63,7 +45,6 @@ class RunResult:
     scenario: Scenario
     wall_s: float = 0.0
     t_ns: int = 0
-    windows: PeaksByPhase = field(default_factory=PeaksByPhase)  #: of single windows
     events: list[Event] = field(default_factory=list)
     fragments: int = 0
     blocks: int = 0
@@ -73,19 +54,29 @@ class RunResult:
     def see(self, frame: Frame) -> None:
         """Takes in one window."""
         self.t_ns = frame.t_ns
-        self.windows.see(frame.t_ns, frame.load)
         self.loads.append((frame.t_ns, frame.load))
         self.events.extend(frame.events)
 
     @property
+    def ends(self) -> IntArray:
+        """End of every window (n,) [ns]."""
+        return np.array([t for t, _ in self.loads], np.int64)
+
+    def lasting(self) -> Array:
+        """Mean load over the averaging time of the scenario, (n, 3, 3) [N]: of this the peaks are the largest."""
+        end, load = self.ends, np.array([load for _, load in self.loads]).reshape(-1, 3, 3)
+        return running_mean(np.concatenate(([0], end))[: len(end)], end, load, self.scenario.averaging)
+
+    @property
     def peaks(self) -> Peaks:
         """Of the whole load."""
-        return self.windows.total
+        return Peaks(self.ends, self.lasting().sum(axis=1))
 
     @property
     def by_phase(self) -> dict[str, Peaks]:
         """Of the load of each phase."""
-        return self.windows.of
+        lasting = self.lasting()
+        return {phase: Peaks(self.ends, lasting[:, k]) for k, phase in enumerate(PHASES)}
 
     def mean_load(self) -> Array:
         """Mean over the run (3,) [N]."""
@@ -93,15 +84,6 @@ class RunResult:
         for t, load in self.loads:
             impulse, before = impulse + (t - before) * load.sum(axis=0), t
         return np.asarray(impulse / max(before, 1))
-
-    def sustained(self) -> dict[str, Any]:
-        """Peaks of the mean over `SUSTAINED`, of all phases and of each."""
-        end = np.array([t for t, _ in self.loads], np.int64)
-        mean = running_mean(np.concatenate(([0], end[:-1])), end, np.array([load for _, load in self.loads]))
-        peaks = PeaksByPhase()
-        for t, load in zip(end.tolist(), mean, strict=True):
-            peaks.see(t, load)
-        return {"seconds": SUSTAINED, **peaks.to_json()}
 
     def to_json(self) -> dict[str, Any]:
         """What ``cosim run --json`` prints, but for the name of the recording."""
@@ -111,23 +93,27 @@ class RunResult:
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s,
-            **self.windows.to_json(),
-            "sustained": self.sustained(),
-            "events": [event_json(e) for e in self.events],
+            "averaging_s": self.scenario.averaging,
+            "peaks": self.peaks.to_json(),
+            "peaks_by_phase": {phase: peaks.to_json() for phase, peaks in self.by_phase.items()},
+            "events": self._events(),
             "fragments": self.fragments,
             "blocks": self.blocks,
             "ledger": self.ledger,
         }
 
+    def _events(self) -> list[dict[str, Any]]:
+        """Time [s], mean load over the averaging time [N], place [m] of every event."""
+        end, total = self.ends, self.lasting().sum(axis=1)
+        return [event_json(e, at_event(end, total, e.t_ns)) for e in self.events]
 
-def event_json(e: Event) -> dict[str, Any]:
-    """An event as ``cosim run --json`` prints it: time [s], load [N], place [m]."""
+
+def event_json(e: Event, load: Array) -> dict[str, Any]:
+    """An event as ``cosim run --json`` prints it."""
     return {
         "time": e.t_ns / NS,
         "kind": e.kind,
-        "fx": e.force[0],
-        "fy": e.force[1],
-        "fz": e.force[2],
+        **dict(zip(AXES, load.tolist(), strict=True)),
         "cells": e.cells,
         "position": list(e.position),
         "text": e.text,

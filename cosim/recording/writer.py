@@ -137,4 +137,5 @@ def run_metadata(info: RunInfo) -> dict[str, str]:
         "ice_density": repr(float(scenario.ice.density)),
         "duration_ns": str(info.duration_ns),
         "window_ns": str(info.window_ns),
+        "averaging_s": repr(float(scenario.averaging)),
     }

@@ -6,9 +6,13 @@ import json
 import tomllib
 from typing import Any
 
+import numpy as np
+import rerun as rr
 import rerun.blueprint as rrb
 
 from cosim.analysis.run_data import RunData
+from cosim.show.cells import over_text
+from cosim.show.scale import Scale, scale_of
 
 TIMELINE = "simulated_time"
 
@@ -23,10 +27,12 @@ def blueprint(run: RunData) -> rrb.Blueprint:
         (24, 34, 52),
     )
     below = _rubble_view(run)
+    scale, over = load_scale(run), over_text(run.averaging)
     curves = [
         rrb.TimeSeriesView(
             origin=f"/load/{axis}",
-            name=f"{label} on the structure [MN]",
+            name=f"{label} on the structure [{scale.unit}], mean over {over}",
+            axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=_boundary(0.0), end=_boundary(float(run.t[-1])))),
             plot_legend=rrb.PlotLegend(corner="LeftTop", visible=True),
         )
         for axis, label in (("fx", "Fx"), ("fz", "Fz"))
@@ -40,6 +46,15 @@ def blueprint(run: RunData) -> rrb.Blueprint:
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
     )
+
+
+def _boundary(seconds: float) -> Any:
+    return rr.TimeRangeBoundary.absolute(seconds=seconds)
+
+
+def load_scale(run: RunData) -> Scale:
+    """In which the curves of a run are drawn."""
+    return scale_of((np.abs(run.lasting.component(axis)).max(initial=0.0) for axis in ("fx", "fz")), "N")
 
 
 def _rubble_view(run: RunData) -> Any:

@@ -7,13 +7,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
-from rich.text import Text
 
 from cosim.scenario.loading import load_scenario
-from cosim.show.console import print_line, stderr, stdout, warn
+from cosim.show.cells import over_text
+from cosim.show.console import new_table, plain, print_line, print_progress, stderr, stdout, warn
+from cosim.show.scale import scale_of
 from cosim.study.sweep import COMPONENTS, RESULTS, Row, sweep
 from cosim.study.variants import Variant, parse_axis, variants
 
@@ -41,19 +40,18 @@ def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid
         warn(text)
     chosen = variants(axes, grid)
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("variants, remaining"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=stderr, transient=True) as progress:
-        task = progress.add_task(base.title, total=len(chosen))
+        task = progress.add_task(plain(base.title)[:30], total=len(chosen))
 
         def done(variant: Variant, row: Row) -> None:
             progress.advance(task)
-            what = row.get("error") or f"Fx {row['fx_peak'] / 1e6:.2f} MN, Fz {row['fz_peak'] / 1e6:.2f} MN"
-            progress.console.print(f"{variant.name}: {what}", highlight=False, markup=False, soft_wrap=True)
+            print_progress(f"{variant.name}: {row.get('error') or _in_a_line(row)}")
 
         rows = sweep(scenario, overrides, chosen, workers, done)
     return {
@@ -77,17 +75,21 @@ def write_csv(content: dict[str, Any], out: Path) -> None:
 
 def show(content: dict[str, Any]) -> None:
     """The table for people."""
-    title = f"{content['scenario']}: peaks of 0.5 s means [MN], ratio to the base, largest Fx of each phase"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left", padding=(0, 0, 0, 1))
-    for k, name in enumerate(COLUMNS):
-        table.add_column(Text(name), justify="right" if k else "left", min_width=0 if k else 28)
+    ran = [row for row in content["variants"] if row["error"] is None]
+    scale = scale_of((row[name] for row in ran for name in ("fx_peak", "fz_peak")), "N")
+    over = " or ".join(dict.fromkeys(over_text(row["averaging_s"]) for row in ran))
+    title = f"{content['scenario']}: peaks of means over {over} [{scale.unit}], ratio to the base, largest Fx of phases"
+    table = new_table(*COLUMNS, title=title)
+    table.columns[0].min_width = 28
     for row in content["variants"]:
         if row["error"] is not None:
-            table.add_row(row["variant"], "failed", *[""] * 10)
+            table.add_row(row["variant"], "failed", *[""] * (len(COLUMNS) - 1))
             continue
-        phases = [_mega(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
-        load = [(_mega(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")]
-        table.add_row(row["variant"], *load[0], *load[1], *phases, _mega(row["fx_mean"]), f"{row['wall_s']:.1f}")
+        phases = [scale.text(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
+        load = [
+            (scale.text(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")
+        ]
+        table.add_row(row["variant"], *load[0], *load[1], *phases, scale.text(row["fx_mean"]), f"{row['wall_s']:.1f}")
     stdout.print(table)
     for row in content["variants"]:
         if row["error"] is not None:
@@ -96,8 +98,9 @@ def show(content: dict[str, Any]) -> None:
             print_line(f"largest load at the end: {row['variant']}: it may still grow; give a longer scenario.duration")
 
 
-def _mega(value: float) -> str:
-    return f"{value / 1e6:.2f}"
+def _in_a_line(row: Row) -> str:
+    scale = scale_of((row["fx_peak"], row["fz_peak"]), "N")
+    return f"Fx {scale.labelled(row['fx_peak'])}, Fz {scale.labelled(row['fz_peak'])}"
 
 
 def _ratio(value: float | None) -> str:
