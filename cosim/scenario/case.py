@@ -28,7 +28,8 @@ class Case(Section):
     """[scenario] What runs, and for how long."""
 
     title: Line = Field(examples=["Pier with a cone, ice of 60 cm"])  #: one line, shown by every command
-    description: str = Field("", max_length=10_000)  #: what happens in the case, and where it is from
+    #: what happens in the case, and where it is from
+    description: str = Field("", max_length=10_000, examples=["What happens, and where the case is from"])
     duration: Annotated[Time, Limits("1 ms", "1e6 s", "60 s")]  #: simulated time [s]
     seed: int = Field(0, ge=0, lt=2**63)  #: of every random number of the run
 

@@ -18,6 +18,7 @@ from cosim.scenario.errors import ScenarioError, Source
 from cosim.scenario.faults import faults_of
 from cosim.scenario.files import read_file
 from cosim.scenario.finding import locate
+from cosim.scenario.judge import lattice
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.overrides import apply
 from cosim.scenario.scenario import Scenario
@@ -34,14 +35,12 @@ def load_scenario(path: str | Path, overrides: Iterable[str] = ()) -> Scenario:
     except ValidationError:
         raise ScenarioError(*faults_of(read.table, Source(str(file), read.files, overridden))) from None
     name = file.parent.name if file.name == "scenario.toml" else file.stem
-    return Scenario(name, read.text, read.table, model, overrides, file.parent, _warnings(model))
-
-
-def _warnings(model: ScenarioModel) -> tuple[str, ...]:
-    nu = model.ice.poisson_ratio
-    if nu < 1 / 3 - 1e-9:
-        return (
-            f"ice.poisson_ratio = {nu:g} is below 1/3: in-plane shear springs resist rigid rotation, "
-            "so that a turning floe is strained; use 1/3 unless this is what you study",
-        )
-    return ()
+    return Scenario(
+        name,
+        read.text,
+        read.table,
+        model,
+        overrides,
+        file.parent,
+        tuple(f"{doubt.key}: {doubt.text}" for doubt in lattice(model)),
+    )

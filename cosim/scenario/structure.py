@@ -40,7 +40,7 @@ class Structure(Section):
     waterline_radius: Annotated[Length, Limits("1 mm", "2 km", "5 m")] = None
     #: the cone narrows to this radius, beyond it stands a cylinder [m]
     neck_radius: Annotated[Length, Limits("1 mm", "2 km", "3 m")] = None
-    sides: Annotated[int, Field(ge=3, le=360, examples=[6])] | None = None  #: of a multi-sided cone
+    sides: Annotated[int, Field(ge=3, le=360)] | None = Field(None, examples=[6])  #: of a multi-sided cone
     #: of its sides: 0 a flat side, 180 deg / sides a corner towards the ice [rad]
     orientation: Annotated[AngleOrZero, Limits("0 deg", "360 deg", "30 deg")] = None
     #: of a body of revolution: heights and radii from its lowest point up to the height that top says [m]

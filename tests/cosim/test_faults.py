@@ -113,7 +113,7 @@ def test_angles_in_their_units():
         (CONE, ["rubble.friction_structure=0.6"], "use less than 1 / tan(slope) = 0.577"),
         (CONE, ["ice.compressive_strength='600 kPa'"], "ice.compressive_strength = '600 kPa': 600 kPa is below the"),
         (FLOE, ["sheet.nodes=[5, 5]"], "sheet.nodes = [5, 5]: cells of 13.75 m are not below twice the width"),
-        (FLOE, ["sheet.nodes=[40000, 40000]"], "1.6e+09 nodes are more than a machine holds"),
+        (FLOE, ["sheet.nodes=[40000, 40000]"], "1600000000 nodes are more than a machine holds"),
         (FLOE, ["scenario.seed=-1"], "scenario.seed = -1: input should be greater than or equal to 0"),
         (FLOE, ["scenario.duration='1e6 s'", "coupling.window='5 ms'"], "more than 1e+07 time windows"),
         (FLOE, ["water.current=['1e300 m/s', '0 m/s']"], "water.current"),

@@ -23,7 +23,7 @@ def is_a_square_lattice(m: Any) -> Faults:
     if s.nodes[0] * s.nodes[1] > MOST_NODES:
         yield fault(
             "sheet.nodes",
-            f"{s.nodes[0] * s.nodes[1]:.3g} nodes are more than a machine holds; use {MOST_NODES:g} at most",
+            f"{s.nodes[0] * s.nodes[1]} nodes are more than a machine holds; use {MOST_NODES} at most",
         )
         return
     d, e = s.spacing, s.width / (s.nodes[1] - 1)
