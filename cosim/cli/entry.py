@@ -15,6 +15,7 @@ import typer
 
 from cosim.cli import authoring, recordings, scenarios, simulate
 from cosim.errors import explain
+from cosim.show.console import plain
 
 app = typer.Typer(
     name="cosim",
@@ -55,5 +56,5 @@ def main(arguments: list[str] | None = None) -> NoReturn:
         text, code = explain(error)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
-    sys.stderr.write(f"cosim: {' '.join(text.split())}\n")
+    sys.stderr.write(f"cosim: {plain(' '.join(text.split()))}\n")
     raise SystemExit(code)

@@ -61,14 +61,18 @@ def compare(
         print_beside(design)
 
 
-def info(recording: RunArgument, as_json: JsonOption = False) -> None:
+def info(
+    recording: RunArgument,
+    events: Annotated[bool, typer.Option("--events", help="list all events")] = False,
+    as_json: JsonOption = False,
+) -> None:
     """What a recording holds: scenario, version, time, peaks, events."""
     from cosim.analysis.peaks import summary
     from cosim.recording.reader import read_run
     from cosim.show.tables import print_info
 
     content = summary(read_run(recording))
-    print_json(content) if as_json else print_info(content)
+    print_json(content) if as_json else print_info(content, events)
 
 
 def recover(

@@ -24,9 +24,10 @@ def peaks_table(result: dict[str, Any]) -> PlainTable:
     title = f"Peaks of the mean load over {over_text(result['averaging_s'])}"
     table = new_table("load", *heads, title=title)
     for name, values in rows:
-        cells = [
-            scale.text(values[key][what]) for key in COMPONENTS for what, scale in (("value", loads), ("time", times))
-        ]
+        cells = []
+        for key in COMPONENTS:
+            value = values[key]["value"]
+            cells += [loads.text(value), times.text(values[key]["time"] if value else None)]
         table.add_row(name, *cells)
     return table
 
@@ -53,7 +54,7 @@ def events_line(events: list[dict[str, Any]]) -> str:
 
 
 def ledger_lines(ledger: dict[str, float | None], full: bool = False) -> list[str]:
-    """Largest error of a run's balances, and the energy terms of at least 1 % of the work of the drift; or all."""
+    """Largest error of a run's balances, and the energy terms of at least 5 % of the work of the drift; or all."""
     known = {name: value for name, value in ledger.items() if value is not None}
     kinds = ("_error", "residual", "_mass") if full else ("_error", "residual")
     errors = [f"{name} {value:.2g}" for name, value in known.items() if name.endswith(kinds)]
@@ -61,7 +62,7 @@ def ledger_lines(ledger: dict[str, float | None], full: bool = False) -> list[st
     if "drift_work" not in known:
         return lines
     work = known["drift_work"]
-    least = 0.0 if full else 0.01 * abs(work)
+    least = 0.0 if full else 0.05 * abs(work)
     terms = [
         (name, value)
         for name, value in known.items()
