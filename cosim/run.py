@@ -5,17 +5,19 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from cosim.analysis.run_data import AXES, COMPONENTS
-from cosim.analysis.sustained import at_event, running_mean
+from cosim.analysis.lights import trust
+from cosim.analysis.run_data import AXES, COMPONENTS, RunData
 from cosim.build import build, run_info
 from cosim.observer import Observer
+from cosim.scenario.lengths import characteristic_length
 from cosim.scenario.scenario import Scenario
-from coupling.interface import NS, PHASES, Array, Event, Frame, IntArray
+from coupling.interface import NS, PHASES, Array, Event, Frame, IntArray, SimulationError
 from coupling.scheduler import Scheduler
 
 
@@ -50,33 +52,44 @@ class RunResult:
     blocks: int = 0
     ledger: dict[str, float] = field(default_factory=dict)
     loads: list[tuple[int, Array]] = field(default_factory=list)  #: end [ns] and load (3, 3) of every window
+    staggering: list[tuple[float, float]] = field(default_factory=list)  #: Fx and Fz of every window [N]
 
     def see(self, frame: Frame) -> None:
         """Takes in one window."""
         self.t_ns = frame.t_ns
         self.loads.append((frame.t_ns, frame.load))
+        self.staggering.append((frame.budget.get("fx_staggering", 0.0), frame.budget.get("fz_staggering", 0.0)))
         self.events.extend(frame.events)
 
-    @property
-    def ends(self) -> IntArray:
-        """End of every window (n,) [ns]."""
-        return np.array([t for t, _ in self.loads], np.int64)
-
-    def lasting(self) -> Array:
-        """Mean load over the averaging time of the scenario, (n, 3, 3) [N]: of this the peaks are the largest."""
-        end, load = self.ends, np.array([load for _, load in self.loads]).reshape(-1, 3, 3)
-        return running_mean(np.concatenate(([0], end))[: len(end)], end, load, self.scenario.averaging)
+    @cached_property
+    def data(self) -> RunData:
+        """The run as arrays, as a recording gives them: whatever is told of it is told by the same functions."""
+        metadata = {
+            "averaging_s": repr(float(self.scenario.averaging)),
+            "window_ns": str(self.scenario.window_ns),
+            "spacing_m": repr(float(self.scenario.sheet.spacing)),
+            "characteristic_length_m": repr(characteristic_length(self.scenario.model)),
+        }
+        staggering = np.array(self.staggering).reshape(-1, 2)
+        return RunData(
+            self.scenario.name,
+            metadata,
+            np.array([t for t, _ in self.loads], np.int64),
+            np.array([load for _, load in self.loads]).reshape(-1, 3, 3),
+            tuple(self.events),
+            ledger={name: np.array([value]) for name, value in self.ledger.items()},
+            budget={"fx_staggering": staggering[:, 0], "fz_staggering": staggering[:, 1]},
+        )
 
     @property
     def peaks(self) -> Peaks:
         """Of the whole load."""
-        return Peaks(self.ends, self.lasting().sum(axis=1))
+        return Peaks(self.data.t_ns, self.data.lasting.load.sum(axis=1))
 
     @property
     def by_phase(self) -> dict[str, Peaks]:
         """Of the load of each phase."""
-        lasting = self.lasting()
-        return {phase: Peaks(self.ends, lasting[:, k]) for k, phase in enumerate(PHASES)}
+        return {phase: Peaks(self.data.t_ns, self.data.lasting.load[:, k]) for k, phase in enumerate(PHASES)}
 
     def mean_load(self) -> Array:
         """Mean over the run (3,) [N]."""
@@ -96,24 +109,20 @@ class RunResult:
             "averaging_s": self.scenario.averaging,
             "peaks": self.peaks.to_json(),
             "peaks_by_phase": {phase: peaks.to_json() for phase, peaks in self.by_phase.items()},
-            "events": self._events(),
+            "trust": trust(self.data),
+            "events": [event_json(e) for e in self.data.lasting.events],
             "fragments": self.fragments,
             "blocks": self.blocks,
             "ledger": self.ledger,
         }
 
-    def _events(self) -> list[dict[str, Any]]:
-        """Time [s], mean load over the averaging time [N], place [m] of every event."""
-        end, total = self.ends, self.lasting().sum(axis=1)
-        return [event_json(e, at_event(end, total, e.t_ns)) for e in self.events]
 
-
-def event_json(e: Event, load: Array) -> dict[str, Any]:
-    """An event as ``cosim run --json`` prints it."""
+def event_json(e: Event) -> dict[str, Any]:
+    """An event as ``cosim run --json`` prints it; its load is the mean over the averaging time."""
     return {
         "time": e.t_ns / NS,
         "kind": e.kind,
-        **dict(zip(AXES, load.tolist(), strict=True)),
+        **dict(zip(AXES, e.force, strict=True)),
         "cells": e.cells,
         "position": list(e.position),
         "text": e.text,
@@ -134,10 +143,12 @@ def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunR
             observer.on_start(info)
         while scheduler.t_ns < scenario.duration_ns:
             frame = scheduler.macro_step()
+            _is_finite(frame)
             result.see(frame)
             for observer in observers:
                 observer.on_frame(frame)
     _finish(result, scheduler)
+    _was_touched(result)
     result.wall_s = time.perf_counter() - began
     return result
 
@@ -162,3 +173,22 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
         "interface_exchanged": scheduler.power.exchanged,
         **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")},
     }
+
+
+def _is_finite(frame: Frame) -> None:
+    """Ends a run whose numbers are none."""
+    for what, values in (("load", frame.load), ("place of the sheet", frame.sheet.position)):
+        if not np.isfinite(values).all():
+            raise SimulationError(
+                f"t = {frame.t_ns / NS:.3f} s: the {what} is not finite; halve coupling.window and rubble.substep, "
+                "and see what `cosim check` says of the scenario"
+            )
+
+
+def _was_touched(result: RunResult) -> None:
+    """Ends a run that has met nothing: its zeros are no result."""
+    if result.loads and not any(load.any() for _, load in result.loads):
+        raise SimulationError(
+            f"the structure was never touched in {result.t_ns / NS:g} s; the ice passes it: see structure.top, "
+            "structure.toe_depth and sheet.axis_from_side, or lengthen scenario.duration"
+        )

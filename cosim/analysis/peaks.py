@@ -1,4 +1,4 @@
-"""Largest loads of a recorded run, by component and phase, and the summary of a run."""
+"""Largest loads of a recorded run, by component and phase."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from cosim.analysis.instants import largest
 from cosim.analysis.run_data import RunData
-from coupling.interface import NS, PHASES
+from coupling.interface import PHASES
 
 
 def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> int | None:
@@ -49,36 +49,3 @@ def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
             "shares": {p: v / peak if peak else 0.0 for p, v in loads.items()},
         }
     return out
-
-
-def summary(run: RunData) -> dict[str, Any]:
-    """What a recording holds, as `cosim info --json` prints it."""
-    return {
-        "run": run.name,
-        "scenario": run.metadata["scenario"],
-        "title": run.metadata["title"],
-        "version": run.metadata["version"],
-        "seed": int(run.metadata["seed"]),
-        "overrides": run.overrides,
-        "simulated_s": float(run.t[-1]) if len(run.t) else 0.0,
-        "duration_s": int(run.metadata["duration_ns"]) / NS,
-        "windows": len(run.t),
-        "averaging_s": run.averaging,
-        "peaks": peaks(run),
-        "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
-        "events": [
-            {
-                "time": e.t_ns / NS,
-                "kind": e.kind,
-                "fx": e.force[0],
-                "fy": e.force[1],
-                "fz": e.force[2],
-                "cells": e.cells,
-                "length": e.length,
-                "area": e.area,
-                "cause": e.cause,
-            }
-            for e in run.lasting.events
-        ],
-        "ledger": {name: float(values[-1]) for name, values in run.ledger.items()},
-    }

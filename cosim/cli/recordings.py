@@ -46,6 +46,7 @@ def compare(
 ) -> None:
     """Put the features of a recording beside what was measured and what others computed."""
     from cosim.analysis import compare as comparison
+    from cosim.analysis.lights import trust
     from cosim.baselines.beside import beside
     from cosim.recording.reader import read_run
     from cosim.show.baseline_tables import print_beside
@@ -55,9 +56,9 @@ def compare(
     name, loaded = comparison.reference_of(data, reference)
     rows, design = comparison.compare(data, loaded), beside(data)
     if as_json:
-        print_json({**comparison.to_json(data, name, rows), "design": design})
+        print_json({**comparison.to_json(data, name, rows), "design": design, "trust": trust(data)})
     else:
-        print_compare(loaded.title, rows)
+        print_compare(loaded.title, rows, trust(data))
         print_beside(design)
 
 
@@ -67,7 +68,7 @@ def info(
     as_json: JsonOption = False,
 ) -> None:
     """What a recording holds: scenario, version, time, peaks, events."""
-    from cosim.analysis.peaks import summary
+    from cosim.analysis.summary import summary
     from cosim.recording.reader import read_run
     from cosim.show.tables import print_info
 

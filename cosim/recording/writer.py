@@ -18,6 +18,7 @@ from mcap_protobuf.schema import build_file_descriptor_set
 
 from cosim.observer import RunInfo
 from cosim.recording.channels import CHANNELS, Channel, When
+from cosim.scenario.lengths import characteristic_length
 from coupling.interface import Event, Frame
 
 MESH_EVERY = 4  #: recorded frames between two meshes of a sheet in which no cell fails
@@ -138,4 +139,5 @@ def run_metadata(info: RunInfo) -> dict[str, str]:
         "duration_ns": str(info.duration_ns),
         "window_ns": str(info.window_ns),
         "averaging_s": repr(float(scenario.averaging)),
+        "characteristic_length_m": repr(characteristic_length(scenario.model)),
     }

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from cosim.analysis import budget
 from cosim.analysis.compare import compare, reference_of
-from cosim.analysis.peaks import shares_at_peak, summary
+from cosim.analysis.lights import trust, trust_lines
+from cosim.analysis.peaks import shares_at_peak
 from cosim.analysis.run_data import RunData
+from cosim.analysis.summary import summary
 from cosim.baselines.beside import beside
 from cosim.errors import FailedError
 from cosim.show.baseline_cells import beside_table, remarks
@@ -50,6 +52,7 @@ def content(run: RunData) -> dict[str, Any]:
     figures = [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)]
     return {
         "summary": summary(run),
+        "trust": trust_lines(trust(run)),
         "over": over_text(run.averaging),
         "loads": scale_of((row["value"] for row in shares.values()), "N"),
         "compared": COMPARED,

@@ -6,6 +6,7 @@ from collections import Counter
 from typing import Any
 
 from cosim.analysis.compare import Row
+from cosim.analysis.lights import trust_lines
 from cosim.show.cells import COMPARED, compare_cells, over_text
 from cosim.show.console import PlainTable, new_table, print_line, stdout
 from cosim.show.scale import Scale, scale_of, seconds
@@ -78,6 +79,8 @@ def print_run(result: dict[str, Any], detail: int = 0) -> None:
     """End of `cosim run` on one screen; with more ``detail`` also all events and the whole ledger, with less a line."""
     if detail < 0:
         print_line(peaks_line(result))
+        if not result["trust"]["trustworthy"]:
+            print_line(trust_lines(result["trust"])[-1])
         return
     stdout.print(peaks_table(result))
     print_line(
@@ -87,7 +90,7 @@ def print_run(result: dict[str, Any], detail: int = 0) -> None:
     if detail > 0 and result["events"]:
         stdout.print(events_table(result["events"], result["averaging_s"]))
     print_line(events_line(result["events"]))
-    for line in ledger_lines(result["ledger"], full=detail > 0):
+    for line in (*trust_lines(result["trust"]), *ledger_lines(result["ledger"], full=detail > 0)):
         print_line(line)
     if result["recording"]:
         print_line(f"recording: {result['recording']}")
@@ -111,6 +114,8 @@ def print_info(content: dict[str, Any], events: bool = False) -> None:
         f"overrides: {' '.join(content['overrides']) or 'none'}"
     )
     stdout.print(peaks_table(content))
+    for line in trust_lines(content["trust"]):
+        print_line(line)
     if events and content["events"]:
         stdout.print(events_table(content["events"], content["averaging_s"]))
         return
@@ -118,12 +123,14 @@ def print_info(content: dict[str, Any], events: bool = False) -> None:
     print_line(events_line(content["events"]) + more)
 
 
-def print_compare(title: str, rows: list[Row]) -> None:
+def print_compare(title: str, rows: list[Row], trust: dict[str, Any]) -> None:
     """`cosim compare`: simulated beside computed and measured, then where the numbers are from."""
     table = new_table(*COMPARED, title=title)
     for row in rows:
         table.add_row(*compare_cells(row))
     stdout.print(table)
+    for line in trust_lines(trust):
+        print_line(line)
     for row in rows:
         print_line(f"{row.feature.name}: {row.feature.source}")
 

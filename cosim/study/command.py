@@ -94,8 +94,8 @@ def show(content: dict[str, Any]) -> None:
     for row in content["variants"]:
         if row["error"] is not None:
             print_line(f"failed: {row['variant']}: {row['error']}")
-        elif max(row["fx_time"], row["fz_time"]) >= row["simulated_s"]:
-            print_line(f"largest load at the end: {row['variant']}: it may still grow; give a longer scenario.duration")
+        elif row["not_trustworthy"]:
+            print_line(f"not trustworthy: {row['variant']}: because {row['not_trustworthy']}")
 
 
 def _in_a_line(row: Row) -> str:

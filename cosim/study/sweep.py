@@ -27,6 +27,7 @@ RESULTS = (
     *(f"{c}_time" for c in COMPONENTS),
     *(f"{p}_{c}_peak" for p in PHASES for c in COMPONENTS),
     "averaging_s",
+    "not_trustworthy",
     "fx_mean",
     "fz_mean",
     "simulated_s",
@@ -47,7 +48,7 @@ def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Ro
         result, mean = run.to_json(), run.mean_load()
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}
-    row = {"averaging_s": result["averaging_s"]}
+    row = {"averaging_s": result["averaging_s"], "not_trustworthy": "; ".join(result["trust"]["because"])}
     for c in COMPONENTS:
         row[f"{c}_peak"], row[f"{c}_time"] = result["peaks"][c]["value"], result["peaks"][c]["time"]
         row |= {f"{p}_{c}_peak": result["peaks_by_phase"][p][c]["value"] for p in PHASES}

@@ -132,7 +132,7 @@ def test_units_follow_the_size_of_the_case(cosim, run, tmp_path):
     """The same run with loads of a thousandth and a millionth."""
     import dataclasses
 
-    from cosim.analysis.peaks import summary
+    from cosim.analysis.summary import summary
     from cosim.show.tables import peaks_table
 
     data = read_run(run[1])

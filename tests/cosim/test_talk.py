@@ -150,7 +150,7 @@ def test_no_escape_sequence_of_a_file_or_an_argument_reaches_the_terminal(cosim,
     data = read_run(path)
     import dataclasses
 
-    from cosim.analysis.peaks import summary
+    from cosim.analysis.summary import summary
     from cosim.show.tables import print_info
 
     foreign = dataclasses.replace(data, metadata={**data.metadata, "title": bad, "scenario": bad, "version": "[/x]"})
