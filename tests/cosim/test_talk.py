@@ -1,5 +1,6 @@
 """What a run says: quiet, usual, verbose, into a file; within 80 columns; and texts that are shown, never obeyed."""
 
+import dataclasses
 import io
 import json
 import re
@@ -148,7 +149,6 @@ def test_no_escape_sequence_of_a_file_or_an_argument_reaches_the_terminal(cosim,
         for frame in synthetic.frames(scenario):
             recorder.on_frame(frame)
     data = read_run(path)
-    import dataclasses
 
     from cosim.analysis.summary import summary
     from cosim.show.tables import print_info
@@ -167,3 +167,22 @@ def test_markup_in_the_name_of_a_scenario(cosim, tmp_path):
     file = tmp_path / "[red]x[b].toml"
     file.write_text(load_scenario(CASE).text)
     assert cosim("run", file, *SHORT)[0] == 0
+
+
+def test_info_counts_events_and_lists_all_of_them_on_request(cosim, tmp_path, synthetic):
+    """Sixty events: in one line, and one by one."""
+    from coupling.interface import Event
+
+    scenario = load_scenario(CASE, ["scenario.duration='4 s'"])
+    path = tmp_path / "run.mcap"
+    with Recorder(path) as recorder:
+        recorder.on_start(synthetic.run_info(scenario))
+        for frame in synthetic.frames(scenario):
+            event = Event(frame.t_ns, "cell_failure", (1e6, 0.0, 2e6), 3, (0.0, 0.0, 0.0), "3 cells fail", cause="[/x]")
+            recorder.on_frame(dataclasses.replace(frame, events=(event,)))
+    short, full = cosim("info", path)[1], cosim("info", path, "--events")[1]
+    assert "events: 80 cell_failure (from 0.05 s); `cosim info --events` lists them" in short
+    assert short.count("cell_failure") == 1
+    assert full.count("cell_failure") == 80
+    assert full.count("[/x]") == 80
+    assert len(json.loads(cosim("info", path, "--json")[1])["events"]) == 80
