@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 
@@ -24,9 +25,35 @@ def breaking_length(model: Any) -> float:
 
 
 def width_at_waterline(model: Any) -> float | None:
-    """Of the structure [m]; None for a plane, or where only the profile tells."""
-    radius = model.structure.waterline_radius
-    return None if radius is None else 2.0 * float(radius)
+    """Of the structure [m]; None for a plane, and for a profile that has no waterline."""
+    s = model.structure
+    if s.waterline_radius is not None:
+        return 2.0 * float(s.waterline_radius)
+    around = _around_the_waterline(s.profile)
+    if around is None:
+        return None
+    (low, inner), (high, outer) = around
+    return 2.0 * (inner + (outer - inner) * -low / (high - low))
+
+
+def slope_at_waterline(model: Any) -> float | None:
+    """Of the structure, from the horizontal [rad]; None for a profile that has no waterline, or is upright there."""
+    s = model.structure
+    if s.slope is not None:
+        return float(s.slope)
+    around = _around_the_waterline(s.profile)
+    if around is None or around[0][1] == around[1][1]:
+        return None
+    (low, inner), (high, outer) = around
+    return math.atan((high - low) / abs(outer - inner))
+
+
+def _around_the_waterline(profile: Any) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """The points [height, radius] of a profile below and above water."""
+    for below, above in pairwise(profile or ()):
+        if below[0] <= 0.0 < above[0]:
+            return below, above
+    return None
 
 
 def drift_in_run(model: Any) -> float:

@@ -143,7 +143,7 @@ def list_of(unit: Unit, *kinds: Any) -> Any:
     """A list of ``kinds``, of any number where the second is an ellipsis; read as a tuple."""
 
     def as_tuple(value: object) -> object:
-        if not isinstance(value, list | tuple) or (... not in kinds and len(value) != len(kinds)):
+        if not isinstance(value, list | tuple) or (not value if ... in kinds else len(value) != len(kinds)):
             count = "several" if ... in kinds else f"{len(kinds)}"
             raise _fault(f"write {count} values in brackets", unit)
         return tuple(value)

@@ -129,6 +129,25 @@ def test_friction_that_slides_is_taken_up_to_the_limit():
     assert load_scenario(CONE, ["contact.friction=0.57", "rubble.friction_structure=0.57"]).contact.friction == 0.57
 
 
+@pytest.mark.parametrize(
+    ("points", "overrides", "says"),
+    [
+        ("[['-4 m', '0.6 m'], ['4 m', '1 m']]", [], "wider than the structure of 1.6 m"),
+        ("[['-4 m', '3 m'], ['4 m', '4.2 m']]", ["contact.friction=0.2"], "slope of 81.5 deg"),
+        ("[['-4 m', '3 m'], ['4 m', '4.2 m']]", ["structure.top='3 m'"], "ends at 4 m, the structure at 3 m"),
+        ("[['1 m', '3 m'], ['4 m', '4.2 m']]", [], "misses the waterline"),
+        ("[]", [], "write several values in brackets"),
+        ("[['-1 m', '1 m']]", [], "two or more points"),
+    ],
+)
+def test_a_profile_is_checked_where_the_ice_meets_it(tmp_path, points, overrides, says):
+    file = tmp_path / "mine.toml"
+    shape = 'kind = "cone"\nslope = "55 deg"\nwaterline_radius = "5 m"\n'
+    file.write_text(CASE.replace(shape, f'kind = "profile"\ntop = "4 m"\nprofile = {points}\n'))
+    lines = faults(file, *overrides)
+    assert any(says in line for line in lines), lines
+
+
 def test_all_faults_are_told_at_once(tmp_path):
     file = tmp_path / "mine.toml"
     text = CASE.replace('"0.8 m"', "0.8").replace('"55 deg"', '"55 %"').replace('back = "held"', "bck = 1")

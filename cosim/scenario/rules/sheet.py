@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
+from cosim.scenario.lengths import width_at_waterline
 from cosim.scenario.section import fault
 
 Faults = Iterator[PydanticCustomError]
@@ -56,12 +57,12 @@ def beam_test_holds_for_the_mesh(m: Any) -> Faults:
 
 def structure_is_wider_than_a_cell(m: Any) -> Faults:
     """What is narrower passes between two nodes and is never touched."""
-    radius, d = m.structure.waterline_radius, m.sheet.length / max(m.sheet.nodes[0] - 1, 1)
-    if radius is not None and 2.0 * radius < d:
-        least = math.floor(m.sheet.length / (2.0 * radius)) + 2
+    width, d = width_at_waterline(m), m.sheet.length / max(m.sheet.nodes[0] - 1, 1)
+    if width is not None and width < d:
+        least = math.floor(m.sheet.length / max(width, 1e-3)) + 2
         yield fault(
             "sheet.nodes",
-            f"cells of {d:.4g} m are wider than the structure of {2.0 * radius:g} m, which passes between two nodes; "
+            f"cells of {d:.4g} m are wider than the structure of {width:g} m, which passes between two nodes; "
             f"use at least {least} nodes along x, better five times as many",
         )
 

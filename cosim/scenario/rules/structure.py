@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
+from cosim.scenario.lengths import slope_at_waterline
 from cosim.scenario.names import kinds_of_structure
 from cosim.scenario.section import fault
 
@@ -100,7 +101,7 @@ def rubble_lies_under_the_sheet(m: Any) -> Faults:
 
 def ice_can_slide(m: Any) -> Faults:
     """Fz / Fx = (1 - mu tan a) / (tan a + mu) of a face that is slid along turns its sign at mu = 1 / tan a."""
-    slope = m.structure.slope
+    slope = slope_at_waterline(m)
     if slope is None:
         return
     largest = 1.0 / math.tan(slope)
