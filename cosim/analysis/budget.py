@@ -16,17 +16,17 @@ from coupling.interface import Array
 def rows(run: RunData) -> list[dict[str, Any]]:
     """The terms [N] of Fx and Fz: at both peaks, before circumferential failures, on the mean; empty without a budget.
 
-    All are means over the averaging time of the run. "Before" is the last window before the first failure of each
+    Those at an instant are means over the averaging time of the run. "Before" is the last window before the first failure of each
     encounter.
     """
     if not run.budget or not len(run.t_ns):
         return []
-    run = run.lasting
+    windows, run = run, run.lasting
     at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
     instants = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
     instants += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
     table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in instants for axis in ("fz", "fx")]
-    return table + [_row(run, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
+    return table + [_row(windows, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
 
 
 def carriers(run: RunData) -> tuple[str, ...]:
