@@ -16,8 +16,8 @@ from coupling.interface import Array
 def rows(run: RunData) -> list[dict[str, Any]]:
     """The terms [N] of Fx and Fz: at both peaks, before circumferential failures, on the mean; empty without a budget.
 
-    Those at an instant are means over the averaging time of the run. "Before" is the last window before the first failure of each
-    encounter.
+    Those at an instant are means over the averaging time of the run. "Before" is the last window before the first
+    failure of each encounter.
     """
     if not run.budget or not len(run.t_ns):
         return []

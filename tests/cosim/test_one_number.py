@@ -144,3 +144,9 @@ def test_units_follow_the_size_of_the_case(cosim, run, tmp_path):
         assert len(first.replace(".", "").lstrip("0")) in (2, 3)  # three digits at the largest of the table
         report = content(small)
         assert report["loads"].unit == unit
+
+
+def test_lengths_of_events_have_three_digits_at_any_scale():
+    from coupling.sheet_port.events import told
+
+    assert [told(x) for x in (180.4, 0.28864, 15.25, 1234.0, 2.0)] == ["180", "0.289", "15.2", "1230", "2"]
