@@ -30,7 +30,7 @@ def run(
     from cosim.scenario.loading import load_scenario
     from cosim.show.check import fact_lines, judged
     from cosim.show.progress import ProgressBar
-    from cosim.show.tables import peaks_line, print_run
+    from cosim.show.tables import print_run, result_lines
 
     loaded = load_scenario(scenario, overrides or ())
     about = judged(loaded)
@@ -50,7 +50,8 @@ def run(
         observers.append(Recorder(output))
     result = _simulate(loaded, observers)
     result["recording"] = None if output is None else str(output)
-    talk.keep(peaks_line(result))
+    for line in result_lines(result):
+        talk.keep(line)
     print_json(result) if as_json else print_run(result, talk.level)
 
 

@@ -78,9 +78,8 @@ def ledger_lines(ledger: dict[str, float | None], full: bool = False) -> list[st
 def print_run(result: dict[str, Any], detail: int = 0) -> None:
     """End of `cosim run` on one screen; with more ``detail`` also all events and the whole ledger, with less a line."""
     if detail < 0:
-        print_line(peaks_line(result))
-        if not result["trust"]["trustworthy"]:
-            print_line(trust_lines(result["trust"])[-1])
+        for line in result_lines(result):
+            print_line(line)
         return
     stdout.print(peaks_table(result))
     print_line(
@@ -96,14 +95,15 @@ def print_run(result: dict[str, Any], detail: int = 0) -> None:
         print_line(f"recording: {result['recording']}")
 
 
-def peaks_line(result: dict[str, Any]) -> str:
-    """The peaks of the whole load in a line."""
+def result_lines(result: dict[str, Any]) -> list[str]:
+    """The peaks of the whole load in a line, and what speaks against them in another."""
     loads = scale_of((result["peaks"][key]["value"] for key in COMPONENTS), "N")
     parts = [
         f"{name} {loads.labelled(result['peaks'][key]['value'])} at {result['peaks'][key]['time']:.2f} s"
         for key, name in (("fx", "Fx"), ("fz", "Fz"))
     ]
-    return f"peaks, means over {over_text(result['averaging_s'])}: {', '.join(parts)}"
+    line = f"peaks, means over {over_text(result['averaging_s'])}: {', '.join(parts)}"
+    return [line] if result["trust"]["trustworthy"] else [line, trust_lines(result["trust"])[-1]]
 
 
 def print_info(content: dict[str, Any], events: bool = False) -> None:
