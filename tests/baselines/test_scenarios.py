@@ -77,6 +77,7 @@ def a_run(text):
         "seed": "0",
         "duration_ns": "150000000",
         "window_ns": "50000000",
+        "averaging_s": "0",
         "overrides": "[]",
     }
     ledger = {n: np.ones(3) for n in ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")}
