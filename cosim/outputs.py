@@ -5,6 +5,7 @@
 * What was simulated (recordings, tables of a sweep) grows at its place and is kept; a recording unless the user says
   ``--force``.
 * What can be drawn again (pages, pictures) is written under another name and then renamed.
+* A log is appended to, if it is one.
 * A file that is being written is locked: a second writer is refused.
 """
 
@@ -32,6 +33,7 @@ MAGIC = {
     ".png": b"\x89PNG",
     ".html": b"<!doctype html",
     ".csv": b"variant,",
+    ".log": b"# cosim log",
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists
 GROWS = {
@@ -121,6 +123,21 @@ def grow(path: Path, kind: str, force: bool = False) -> IO[bytes]:
         number = _locked(target, path)
         os.ftruncate(number, 0)
         return os.fdopen(number, "wb")
+    except OSError as error:
+        raise trouble(path, error) from error
+
+
+def append(path: Path, kind: str) -> IO[bytes]:
+    """Open a file of lines at its end, locked and unbuffered until it is closed; a new one begins with its kind."""
+    writable(path, kind)
+    target = resolved(path)
+    try:
+        if target.exists() and not _is_regular(target):
+            return target.open("wb", buffering=0)
+        file = os.fdopen(_locked(target, path), "ab", buffering=0)
+        if file.seek(0, os.SEEK_END) == 0:
+            file.write(MAGIC[kind] + b"\n")
+        return file
     except OSError as error:
         raise trouble(path, error) from error
 

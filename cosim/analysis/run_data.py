@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from cosim.analysis.sustained import running_mean
+from cosim.analysis.sustained import at_event, averaging_time, running_mean
 from coupling.interface import NS, PHASES, Array, Event, IntArray
 
 #: components of a load in recordings, and with the resultant ``f``
@@ -61,9 +62,35 @@ class RunData:
         out: Array = load[:, AXES.index(name)]
         return out
 
+    @property
+    def averaging(self) -> float:
+        """Peaks of this run are those of the mean over this time [s]; see `cosim.analysis.sustained`.
+
+        In a recording that does not say it, it is the default for its ice.
+        """
+        told = self.metadata.get("averaging_s")
+        return averaging_time(float(self.metadata["thickness_m"])) if told is None else float(told)
+
     def averaged(self, seconds: float) -> RunData:
-        """The run with loads that are means over the last ``seconds``; see `cosim.analysis.sustained`."""
-        return replace(self, load=running_mean(self.begin_ns, self.t_ns, self.load, seconds))
+        """The run with loads, budget and loads of events that are means over the last ``seconds``; 0: as they are."""
+        if seconds <= 0.0 or not len(self.t_ns):
+            return self
+        load = running_mean(self.begin_ns, self.t_ns, self.load, seconds)
+        total = load.sum(axis=1)
+        return replace(
+            self,
+            load=load,
+            events=tuple(replace(e, force=tuple(at_event(self.t_ns, total, e.t_ns).tolist())) for e in self.events),
+            budget={
+                name: running_mean(self.begin_ns, self.t_ns, np.nan_to_num(term), seconds)
+                for name, term in self.budget.items()
+            },
+        )
+
+    @cached_property
+    def lasting(self) -> RunData:
+        """The run with the loads of which its peaks are the largest."""
+        return self.averaged(self.averaging)
 
     @property
     def overrides(self) -> list[str]:

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cosim.cli import recordings, scenarios, simulate
+from cosim.cli import authoring, recordings, scenarios, simulate
 from cosim.errors import explain
 from cosim.plain import one_line
 from cosim.signals import StoppedError, handled
@@ -24,6 +24,9 @@ app = typer.Typer(
 )
 #: in the order of the help
 COMMANDS: dict[str, Callable[..., None]] = {
+    "new": authoring.new,
+    "keys": authoring.keys,
+    "check": authoring.check,
     "run": simulate.run,
     "sweep": simulate.sweep_variants,
     "replay": recordings.replay,

@@ -50,6 +50,7 @@ def compare(
 ) -> None:
     """Put the features of a recording beside what was measured and what others computed."""
     from cosim.analysis import compare as comparison
+    from cosim.analysis.lights import trust
     from cosim.baselines.beside import beside
     from cosim.show.baseline_tables import print_beside
     from cosim.show.opening import opened
@@ -59,20 +60,24 @@ def compare(
     name, loaded = comparison.reference_of(data, reference)
     rows, design = comparison.compare(data, loaded), beside(data)
     if as_json:
-        print_json({**comparison.to_json(data, name, rows), "design": design})
+        print_json({**comparison.to_json(data, name, rows), "design": design, "trust": trust(data)})
     else:
-        print_compare(loaded.title, rows)
+        print_compare(loaded.title, rows, trust(data))
         print_beside(design)
 
 
-def info(recording: RunArgument, as_json: JsonOption = False) -> None:
+def info(
+    recording: RunArgument,
+    events: Annotated[bool, typer.Option("--events", help="list all events")] = False,
+    as_json: JsonOption = False,
+) -> None:
     """What a recording holds: scenario, version, time, peaks, events."""
-    from cosim.analysis.peaks import summary
+    from cosim.analysis.summary import summary
     from cosim.show.opening import opened
     from cosim.show.tables import print_info
 
     content = summary(opened(recording))
-    print_json(content) if as_json else print_info(content)
+    print_json(content) if as_json else print_info(content, events)
 
 
 def recover(

@@ -3,44 +3,71 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption
+from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption, talking
 from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
 from cosim.outputs import whole, writable
+from cosim.show.talk import Talk
 
 if TYPE_CHECKING:
+    from cosim.scenario.scenario import Scenario
     from cosim.verify.case import CaseResult
 
 
+@talking
 def run(
     scenario: ScenarioArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
     overrides: SetOption = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="check and build, simulate nothing")] = False,
     force: ForceOption = False,
     as_json: JsonOption = False,
+    *,
+    talk: Talk,
 ) -> None:
     """Simulate a scenario."""
     from cosim.observer import Observer
     from cosim.recording.writer import Recorder
     from cosim.scenario.loading import load_scenario
-    from cosim.show.console import warn
+    from cosim.show.check import fact_lines, judged
     from cosim.show.progress import ProgressBar
-    from cosim.show.tables import print_run
+    from cosim.show.tables import print_run, result_lines
     from cosim.watched import simulate
 
     loaded = load_scenario(scenario, overrides or ())
+    about = judged(loaded)
+    for text in about["faults"]:
+        raise InputError(text)
     for text in loaded.warnings:
-        warn(text)
-    observers: list[Observer] = [ProgressBar()]
+        talk.warn(text)
+    for line in (*fact_lines(about["facts"]), about["cost_text"]):
+        talk.detail(line)
+    observers: list[Observer] = [ProgressBar(talk)]
     if output is not None:
-        observers.append(Recorder(writable(output, ".mcap", force=force), force=force))
+        writable(output, ".mcap", force=force)
+    if dry_run:
+        _dry_run(loaded, about, as_json)
+        return
+    if output is not None:
+        observers.append(Recorder(output, force=force))
     result = simulate(loaded, observers)
     result["recording"] = None if output is None else str(output)
-    print_json(result) if as_json else print_run(result)
+    for line in result_lines(result):
+        talk.keep(line)
+    print_json(result) if as_json else print_run(result, talk.level)
+
+
+def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
+    """Build all participants, tell what would run, and simulate nothing."""
+    from cosim.build import build
+    from cosim.show.check import print_check
+
+    build(scenario)
+    print_json(about) if as_json else print_check(about)
 
 
 def sweep_variants(

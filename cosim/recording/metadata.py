@@ -10,6 +10,7 @@ from typing import Any
 
 from cosim import provenance
 from cosim.observer import RunInfo
+from cosim.scenario.lengths import characteristic_length
 
 FORMAT = "2"  #: of recordings; goes up with every change that an older reader would misread
 RUN, END = "run", "end"  #: names of the records: what was asked, how it ended
@@ -36,6 +37,8 @@ def run_metadata(info: RunInfo, texts: Mapping[str, str]) -> dict[str, str]:
         "ice_density": repr(float(scenario.ice.density)),
         "duration_ns": str(info.duration_ns),
         "window_ns": str(info.window_ns),
+        "averaging_s": repr(float(scenario.averaging)),
+        "characteristic_length_m": repr(characteristic_length(scenario.model)),
         "attachments": json.dumps(list(texts)),
     }
 
@@ -100,5 +103,7 @@ CHECKS: dict[str, Callable[[str], bool]] = {
     "ice_density": _length,
     "duration_ns": _whole(1),
     "window_ns": _whole(1),
+    "averaging_s": lambda text: 0.0 <= float(text) < math.inf,
+    "characteristic_length_m": _length,
     "attachments": _list_of(str),
 }

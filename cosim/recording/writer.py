@@ -20,6 +20,7 @@ from cosim.observer import RunInfo
 from cosim.outputs import drop, grow, trouble
 from cosim.recording.channels import CHANNELS, Channel, When
 from cosim.recording.metadata import COMPLETE, END, RUN, run_metadata, sealed
+from cosim.scenario.files import read_toml
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Event, Frame
 
@@ -154,8 +155,5 @@ def attachments(scenario: Scenario) -> dict[str, str]:
     texts = {"scenario.toml": scenario.resolved_toml(), "scenario.as-written.toml": scenario.text}
     reference = scenario.folder / "reference.toml" if scenario.folder else None
     if reference is not None and reference.is_file():
-        try:
-            texts["reference.toml"] = reference.read_text(encoding="utf-8")
-        except UnicodeDecodeError as error:
-            raise InputError(f"{reference}: not UTF-8: {error}; save it as UTF-8") from None
+        texts["reference.toml"] = read_toml(reference, InputError)[0]
     return texts

@@ -9,8 +9,8 @@ from pydantic_core import PydanticCustomError
 
 from cosim.errors import InputError
 from cosim.scenario.errors import ScenarioError
+from cosim.scenario.files import read_file
 from cosim.scenario.finding import find_scenarios
-from cosim.scenario.loading import read
 from cosim.scenario.units import Unit, to_si
 
 
@@ -34,7 +34,7 @@ def _entry(folder: Path) -> dict[str, Any]:
     keys = ("title", "description", "duration")
     row: dict[str, Any] = {"name": folder.name, "title": None, "description": "", "duration": None, "fault": None}
     try:
-        table = read(file)[1].get("scenario")
+        table = read_file(file).table.get("scenario")
         if not isinstance(table, dict):
             raise ScenarioError(f"{file}: scenario is missing; add the section [scenario]")
         for key in ("title", "duration"):

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 import rerun as rr
 from google.protobuf.message import DecodeError
+from rerun.components import AggregationPolicy
 
 from cosim.analysis.run_data import RunData
 from cosim.errors import FailedError, InputError
@@ -23,7 +24,7 @@ from cosim.recording import shapes
 from cosim.recording.reader import messages
 from cosim.show import pictures
 from cosim.show.console import print_line
-from cosim.show.layout import TIMELINE, blueprint
+from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
 from cosim.show.viewer import headless_viewer, screen_viewer, wait_until_loaded, web_viewer
 from coupling.interface import NS, PHASES, Phase
@@ -59,7 +60,8 @@ def serve(recording: Path, port: int | None = None, browser: bool = True) -> Non
         with _stream() as stream:
             stream.connect_grpc(url, default_blueprint=blueprint(run))
             send(stream, recording, run)
-        print_line(f"{page}\nthis machine only; Ctrl-C ends it")
+        print_line(page)
+        print_line("this machine only; Ctrl-C ends it")
         if browser:
             webbrowser.open(page)
         code = process.wait()
@@ -115,13 +117,17 @@ def _meshes(recording: Path, run: RunData) -> Iterator[pictures.Mesh]:
 def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
     # curves are drawn in the order of their paths: the total first, so that it hides no phase
     series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
+    run = run.lasting
+    scale = load_scale(run)
     index = rr.TimeColumn(TIMELINE, duration=run.t)
     for axis in ("fx", "fz"):
         for key, name, phase, rgb in series:
             path = f"load/{axis}/{key}"
             width = 3.5 if phase is None else 1.6
-            stream.log(path, rr.SeriesLines(names=name, colors=rgb, widths=width), static=True)
-            values = rr.Scalars.columns(scalars=run.component(axis, phase) * 1e-6)
+            # no aggregation: the viewer would draw means over what falls on one pixel, and the peak would be lower
+            line = rr.SeriesLines(names=name, colors=rgb, widths=width, aggregation_policy=AggregationPolicy.Off)
+            stream.log(path, line, static=True)
+            values = rr.Scalars.columns(scalars=run.component(axis, phase) / scale.size)
             stream.send_columns(path, indexes=[index], columns=values)
 
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rich import box
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
-from rich.text import Text
 
 from cosim.scenario.finding import locate
 from cosim.scenario.loading import load_scenario
-from cosim.show.console import print_line, stderr, stdout, warn
+from cosim.show.cells import over_text
+from cosim.show.console import as_line, new_table, print_line, print_progress, stderr, stdout, warn
+from cosim.show.scale import scale_of
 from cosim.signals import StoppedError
 from cosim.study.sweep import Row, sweep
-from cosim.study.table import Table as TableFile
+from cosim.study.table import Table
 from cosim.study.variants import parse_axis, variants
 
 COLUMNS = (
@@ -35,7 +34,7 @@ COLUMNS = (
 
 
 def run_sweep(
-    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: TableFile
+    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: Table
 ) -> dict[str, Any]:
     """All variants with a progress bar, written to ``table`` as they end; the content of ``--json``.
 
@@ -52,12 +51,11 @@ def run_sweep(
     rows: list[Row] = []
     try:
         with _progress() as progress:
-            task = progress.add_task(base.title, total=len(chosen))
+            task = progress.add_task(as_line(base.title)[:30], total=len(chosen))
 
             def done(row: Row, ended: list[Row]) -> None:
                 progress.advance(task)
-                what = row["error"] or f"Fx {row['fx_peak'] / 1e6:.2f} MN, Fz {row['fz_peak'] / 1e6:.2f} MN"
-                progress.console.print(f"{row['variant']}: {what}", highlight=False, soft_wrap=True)
+                print_progress(f"{row['variant']}: {row['error'] or _in_a_line(row)}")
                 rows[:] = ended
                 table.write(keys, ended)
 
@@ -82,27 +80,32 @@ def _progress() -> Progress:
 
 def show(content: dict[str, Any]) -> None:
     """The table for people."""
-    title = f"{content['scenario']}: peaks of 0.5 s means [MN], ratio to the base, largest Fx of each phase"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left", padding=(0, 0, 0, 1))
-    for k, name in enumerate(COLUMNS):
-        table.add_column(Text(name), justify="right" if k else "left", min_width=0 if k else 28)
+    ran = [row for row in content["variants"] if row["error"] is None]
+    scale = scale_of((row[name] for row in ran for name in ("fx_peak", "fz_peak")), "N")
+    over = " or ".join(dict.fromkeys(over_text(row["averaging_s"]) for row in ran))
+    title = f"{content['scenario']}: peaks of means over {over} [{scale.unit}], ratio to the base, largest Fx of phases"
+    table = new_table(*COLUMNS, title=title)
+    table.columns[0].min_width = 28
     for row in content["variants"]:
         if row["error"] is not None:
-            table.add_row(row["variant"], "failed", *[""] * 10)
+            table.add_row(row["variant"], "failed", *[""] * (len(COLUMNS) - 1))
             continue
-        phases = [_mega(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
-        load = [(_mega(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")]
-        table.add_row(row["variant"], *load[0], *load[1], *phases, _mega(row["fx_mean"]), f"{row['wall_s']:.1f}")
+        phases = [scale.text(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
+        load = [
+            (scale.text(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")
+        ]
+        table.add_row(row["variant"], *load[0], *load[1], *phases, scale.text(row["fx_mean"]), f"{row['wall_s']:.1f}")
     stdout.print(table)
     for row in content["variants"]:
         if row["error"] is not None:
             print_line(f"failed: {row['variant']}: {row['error']}")
-        elif max(row["fx_time"], row["fz_time"]) >= row["simulated_s"]:
-            print_line(f"largest load at the end: {row['variant']}: it may still grow; give a longer scenario.duration")
+        elif row["not_trustworthy"]:
+            print_line(f"not trustworthy: {row['variant']}: because {row['not_trustworthy']}")
 
 
-def _mega(value: float) -> str:
-    return f"{value / 1e6:.2f}"
+def _in_a_line(row: Row) -> str:
+    scale = scale_of((row["fx_peak"], row["fz_peak"]), "N")
+    return f"Fx {scale.labelled(row['fx_peak'])}, Fz {scale.labelled(row['fz_peak'])}"
 
 
 def _ratio(value: float | None) -> str:

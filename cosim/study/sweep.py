@@ -3,8 +3,8 @@
 A variant that fails does not stop the others: its row holds the error as one line. So does one whose process dies (no
 memory, a signal): the pool is then made anew, and what was under way runs again, one at a time, to find out which it
 was. All processes end with this one, however it ends. Each variant computes on one thread, so that its numbers do not
-depend on how many run beside it. Peaks are those of loads that last (`cosim.analysis.sustained`): the load of a single
-window depends on the window.
+depend on how many run beside it. Peaks are those of `cosim.analysis.sustained`, means over the averaging time of each
+variant.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ RESULTS = (
     *(f"{c}_peak" for c in COMPONENTS),
     *(f"{c}_time" for c in COMPONENTS),
     *(f"{p}_{c}_peak" for p in PHASES for c in COMPONENTS),
+    "averaging_s",
+    "not_trustworthy",
     "fx_mean",
     "fz_mean",
     "simulated_s",
@@ -51,10 +53,10 @@ def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Ro
         result, mean = run.to_json(), run.mean_load()
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}
-    row, lasting = {}, result["sustained"]
+    row = {"averaging_s": result["averaging_s"], "not_trustworthy": "; ".join(result["trust"]["because"])}
     for c in COMPONENTS:
-        row[f"{c}_peak"], row[f"{c}_time"] = lasting["peaks"][c]["value"], lasting["peaks"][c]["time"]
-        row |= {f"{p}_{c}_peak": lasting["peaks_by_phase"][p][c]["value"] for p in PHASES}
+        row[f"{c}_peak"], row[f"{c}_time"] = result["peaks"][c]["value"], result["peaks"][c]["time"]
+        row |= {f"{p}_{c}_peak": result["peaks_by_phase"][p][c]["value"] for p in PHASES}
     row["fx_mean"], row["fz_mean"] = float(mean[0]), float(mean[2])
     return row | {name: result[name] for name in ("simulated_s", "wall_s", "fragments", "blocks")}
 

@@ -127,6 +127,8 @@ def fake_run(monkeypatch, synthetic):
                 "simulated_s": 12.0,
                 "wall_s": 1.0,
                 "real_time_factor": 12.0,
+                "averaging_s": 0.5,
+                "trust": {"trustworthy": True, "because": [], "lights": {}},
                 "peaks": peak,
                 "peaks_by_phase": {p: peak for p in ("breaking", "rotating", "sliding")},
                 "events": [{"time": 4.0, "kind": "split", "fx": 1e6, "fz": float("nan"), "cells": 3}],

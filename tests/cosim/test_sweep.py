@@ -184,10 +184,10 @@ def test_a_wrong_base_is_refused_before_anything_runs():
     assert "did you mean" in done.stderr
 
 
-def test_a_load_that_still_grows_at_the_end_is_pointed_out(content, monkeypatch):
+def test_a_variant_that_is_not_trustworthy_is_pointed_out(content, monkeypatch):
     lines = []
     monkeypatch.setattr("cosim.study.command.print_line", lines.append)
-    times = [{"fx_time": 1.0, "fz_time": 0.5}, {"fx_time": 0.5, "fz_time": 0.9}, {"fx_time": 0.1, "fz_time": 0.1}, {}]
-    show({**content, "variants": [row | t for row, t in zip(content["variants"], times, strict=True)]})
-    assert [line.split(":")[0] for line in lines] == ["largest load at the end", "failed"]
-    assert "base" in lines[0]
+    why = [{"not_trustworthy": "it is at its end"}, {"not_trustworthy": ""}, {"not_trustworthy": ""}, {}]
+    show({**content, "variants": [row | t for row, t in zip(content["variants"], why, strict=True)]})
+    assert lines[0] == "not trustworthy: base: because it is at its end"
+    assert [line.split(":")[0] for line in lines] == ["not trustworthy", "failed"]
