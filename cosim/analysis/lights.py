@@ -15,7 +15,7 @@ import numpy as np
 from cosim.analysis.instants import events_of
 from cosim.analysis.peaks import at_peak
 from cosim.analysis.run_data import RunData
-from coupling.interface import Array
+from coupling.interface import NS, Array
 
 #: energy terms of no physics: below zero they have put energy in
 NUMERICS = ("side_push_loss", "interface_loss", "stepping_loss", "scheme_loss", "correction_loss")
@@ -90,6 +90,13 @@ def time_after_peak(run: RunData) -> float | None:
     return (float(run.t[-1]) - last) / run.averaging
 
 
+def run_length(run: RunData) -> float | None:
+    """Simulated time over the averaging time: below 1 the means reach to before the run, where they count no load."""
+    if not len(run.t_ns) or not run.averaging:
+        return None
+    return float(run.t_ns[-1] - run.begin_ns[0]) / NS / run.averaging
+
+
 def breaks(run: RunData) -> float | None:
     """Pieces that broke off in front of the structure."""
     return float(len(events_of(run, "circumferential")))
@@ -140,6 +147,14 @@ LIGHTS = (
         True,
         "run goes on for {:.1f} averaging times after the peak",
         "the largest load stands at the end of the run (lengthen scenario.duration)",
+    ),
+    Light(
+        "run_length",
+        run_length,
+        1.0,
+        True,
+        "run of {:.1f} averaging times",
+        "the run has {:.2f} averaging times, so that its means count time without load (lengthen scenario.duration)",
     ),
     Light(
         "breaks",

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cosim.analysis.sustained import at_event, averaging_time, running_mean
+from cosim.analysis.sustained import at_event, running_mean
 from coupling.interface import NS, PHASES, Array, Event, IntArray
 
 #: components of a load in recordings, and with the resultant ``f``
@@ -64,12 +64,8 @@ class RunData:
 
     @property
     def averaging(self) -> float:
-        """Peaks of this run are those of the mean over this time [s]; see `cosim.analysis.sustained`.
-
-        In a recording that does not say it, it is the default for its ice.
-        """
-        told = self.metadata.get("averaging_s")
-        return averaging_time(float(self.metadata["thickness_m"])) if told is None else float(told)
+        """Peaks of this run are those of the mean over this time [s]; see `cosim.analysis.sustained`."""
+        return float(self.metadata["averaging_s"])
 
     def averaged(self, seconds: float) -> RunData:
         """The run with loads, budget and loads of events that are means over the last ``seconds``; 0: as they are."""

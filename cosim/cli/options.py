@@ -27,7 +27,7 @@ SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="A.B=V", h
 JsonOption = Annotated[bool, typer.Option("--json", help="one JSON object on standard output")]
 ForceOption = Annotated[bool, typer.Option("--force", help="write over a recording that exists")]
 QuietOption = Annotated[bool, typer.Option("-q", "--quiet", help="warnings, errors and the result only")]
-VerboseOption = Annotated[bool, typer.Option("-v", "--verbose", help="every event, and what was chosen")]
+VerboseOption = Annotated[bool, typer.Option("-v", "--verbose", help="every event of a run, and what was chosen")]
 LogOption = Annotated[Path | None, typer.Option("--log-file", help="append what is said to this file, all of it")]
 
 _TALK = {"quiet": (QuietOption, False), "verbose": (VerboseOption, False), "log_file": (LogOption, None)}

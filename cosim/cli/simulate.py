@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from cosim.cli.grouping import grouped
 from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption, talking
 from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
@@ -70,30 +72,45 @@ def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
     print_json(about) if as_json else print_check(about)
 
 
+@dataclass(frozen=True)
+class SweepFiles:
+    """What a sweep writes."""
+
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None
+    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None
+
+    def check(self) -> None:
+        """Before anything is simulated."""
+        for path, kind in ((self.output, ".csv"), (self.plot, ".png")):
+            if path is not None:
+                writable(path, kind)
+
+
+@talking
+@grouped
 def sweep_variants(
     scenario: ScenarioArgument,
     vary: Annotated[list[str], typer.Option("--vary", metavar="A.B=V,V", help="a key and its values, repeatable")],
+    files: SweepFiles,
     overrides: SetOption = None,
     grid: Annotated[bool, typer.Option("--grid/--one-at-a-time", help="all combinations, or each value alone")] = False,
     workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None,
-    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None,
     as_json: JsonOption = False,
+    *,
+    talk: Talk,
 ) -> None:
     """Run variants of a scenario and put their loads side by side."""
     from cosim.study import command
     from cosim.study.table import Table
 
-    for path, kind in ((output, ".csv"), (plot, ".png")):
-        if path is not None:
-            writable(path, kind)
-    with Table(output) as table:
-        content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table)
+    files.check()
+    with Table(files.output) as table:
+        content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table, talk)
         print_json(content) if as_json else command.show(content)
-    if plot is not None:
+    if files.plot is not None:
         from cosim.show.tornado import tornado
 
-        with whole(plot, ".png") as part:
+        with whole(files.plot, ".png") as part:
             tornado(content, part)
     if content["failed"]:
         raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")

@@ -10,8 +10,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from cosim.scenario.finding import locate
 from cosim.scenario.loading import load_scenario
 from cosim.show.cells import over_text
-from cosim.show.console import as_line, new_table, print_line, print_progress, stderr, stdout, warn
+from cosim.show.check import fact_lines, judged
+from cosim.show.console import as_line, new_table, print_line, stderr, stdout
 from cosim.show.scale import scale_of
+from cosim.show.talk import QUIET, Talk
 from cosim.signals import StoppedError
 from cosim.study.sweep import Row, sweep
 from cosim.study.table import Table
@@ -34,7 +36,7 @@ COLUMNS = (
 
 
 def run_sweep(
-    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: Table
+    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: Table, talk: Talk
 ) -> dict[str, Any]:
     """All variants with a progress bar, written to ``table`` as they end; the content of ``--json``.
 
@@ -44,18 +46,20 @@ def run_sweep(
     file = locate(scenario).resolve()  # once: every process reads the same file
     base = load_scenario(file, overrides)
     for text in base.warnings:
-        warn(text)
+        talk.warn(text)
+    for line in fact_lines(judged(base)["facts"]):
+        talk.detail(line)
     keys = [axis.key for axis in axes]
     content = {"scenario": base.title, "overrides": list(overrides), "keys": keys, "grid": grid}
     chosen = variants(axes, grid)
     rows: list[Row] = []
     try:
-        with _progress() as progress:
+        with _progress(talk) as progress:
             task = progress.add_task(as_line(base.title)[:30], total=len(chosen))
 
             def done(row: Row, ended: list[Row]) -> None:
                 progress.advance(task)
-                print_progress(f"{row['variant']}: {row['error'] or _in_a_line(row)}")
+                talk.note(f"{row['variant']}: {row['error'] or _in_a_line(row)}")
                 rows[:] = ended
                 table.write(keys, ended)
 
@@ -67,7 +71,7 @@ def run_sweep(
     return {**content, "failed": sum(row["error"] is not None for row in rows), "variants": rows}
 
 
-def _progress() -> Progress:
+def _progress(talk: Talk) -> Progress:
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(),
@@ -75,7 +79,7 @@ def _progress() -> Progress:
         TextColumn("variants, remaining"),
         TimeRemainingColumn(),
     )
-    return Progress(*columns, console=stderr, transient=True)
+    return Progress(*columns, console=stderr, transient=True, disable=talk.level == QUIET)
 
 
 def show(content: dict[str, Any]) -> None:

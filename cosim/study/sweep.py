@@ -46,10 +46,14 @@ def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Ro
     """Simulate one variant; what goes wrong becomes ``error``, one line. Runs in a process of the pool."""
     from cosim.errors import explain
     from cosim.run import run_scenario
+    from cosim.scenario.cost import cost_of, too_large
     from cosim.scenario.loading import load_scenario
 
     try:
-        run = run_scenario(load_scenario(scenario, (*overrides, *variant.overrides)))
+        loaded = load_scenario(scenario, (*overrides, *variant.overrides))
+        if refused := too_large(cost_of(loaded.model)):
+            return {"error": refused}
+        run = run_scenario(loaded)
         result, mean = run.to_json(), run.mean_load()
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}

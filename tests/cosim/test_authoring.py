@@ -1,6 +1,8 @@
 """Writing a case: `cosim new`, `keys`, `check`, the schema for editors, and a run that is only tried."""
 
 import json
+import subprocess
+import sys
 import tomllib
 
 import pytest
@@ -48,6 +50,33 @@ def test_new_keeps_what_is_there(cosim, tmp_path):
     code, _, err = cosim("new", tmp_path / "a", "--cone", "--slope")
     assert (code, "exclude each other" in err) == (2, True)
     assert not (tmp_path / "a").exists()
+
+
+NARROW = """
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+from cosim.cli import main
+main()
+"""
+
+
+def test_a_new_case_appears_whole_or_not_at_all(cosim, tmp_path):
+    """The scenario fits on the disk, its schema does not; and of two files one is there already."""
+    for folder in (tmp_path / "pier", tmp_path):
+        done = subprocess.run([sys.executable, "-c", NARROW, "new", folder], capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stderr.count("\n")) == (1, 1), done.stderr
+        assert "scenario.schema.json: File too large; free space or write elsewhere" in done.stderr
+        assert list(tmp_path.iterdir()) == []
+    (tmp_path / "scenario.schema.json").write_text("mine")
+    code, _, err = cosim("new", tmp_path)
+    assert (code, err.count("\n"), "is there already and is kept" in err) == (2, 1, True)
+    assert [(f.name, f.read_text()) for f in tmp_path.iterdir()] == [("scenario.schema.json", "mine")]
+    (tmp_path / "link").mkdir()
+    (tmp_path / "link/scenario.toml").symlink_to(tmp_path / "elsewhere.toml")
+    assert cosim("new", tmp_path / "link")[0] == 2
+    assert not (tmp_path / "elsewhere.toml").exists()
+    code, _, err = cosim("new", tmp_path / "no/pier")
+    assert (code, err.count("\n")) == (2, 1)
 
 
 def test_two_values_are_edited_checked_and_tried(cosim, tmp_path):

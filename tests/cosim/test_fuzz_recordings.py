@@ -18,7 +18,8 @@ mutations = importlib.util.module_from_spec(spec)
 sys.modules[spec.name] = mutations
 spec.loader.exec_module(mutations)
 
-SMALL = ("scenario.duration='7 s'", "sheet.nodes=[6,6]", "recording.every='2 s'", "coupling.window='500 ms'")
+SMALL = ("scenario.duration='7 s'", "recording.every='2 s'", "coupling.window='500 ms'")
+SMALL += ("sheet.nodes=[6,6]", "sheet.length='30 m'", "sheet.width='30 m'")
 
 
 @dataclass

@@ -60,6 +60,17 @@ def test_staggering_is_that_at_the_peak():
     assert lights.staggering_share(alone) == pytest.approx(0.0, abs=1e-9)  # the peak, of 5.5 s, has none
 
 
+def test_a_run_shorter_than_its_averaging_time_says_so():
+    """A mean of a steady 2 MN over 30 s, of which the run has 20, is 1.33 MN: two thirds of the load."""
+    short = run(fx=np.full(N, 2e6), averaging_s="30.0")
+    assert lights.run_length(short) == pytest.approx(2 / 3, rel=1e-12)
+    assert short.lasting.component("fx").max() == pytest.approx(4e6 / 3, rel=1e-12)
+    assert any(text.startswith("the run has 0.67 averaging times") for text in lights.trust(short)["because"])
+    assert lights.run_length(run()) == pytest.approx(40.0, rel=1e-12)
+    assert not any("averaging times" in text for text in lights.trust(run())["because"])
+    assert lights.run_length(run(averaging_s="0")) is None
+
+
 def test_odd_and_even_windows():
     swing = 2e6 + 2e5 * (-1.0) ** np.arange(N)
     assert lights.odd_even(run(fx=swing)) == pytest.approx(0.2, rel=1e-9)

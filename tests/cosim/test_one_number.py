@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cosim.analysis.sustained import averaging_time
+from cosim.recording.metadata import fault
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.run import run_scenario
@@ -119,13 +120,13 @@ def test_the_averaging_time_follows_froude_from_the_thickness(tmp_path):
     assert load_scenario(file, ["water.gravity='39.24 m/s^2'"]).averaging == pytest.approx(0.5, rel=1e-12)
 
 
-def test_a_recording_that_says_no_averaging_time_has_that_of_its_ice(run):
-    import dataclasses
-
-    data = read_run(run[1])
-    old = dataclasses.replace(data, metadata={k: v for k, v in data.metadata.items() if k != "averaging_s"})
-    assert old.averaging == pytest.approx(averaging_time(3.0), rel=1e-12)
-    assert data.averaging == 0.3
+def test_a_recording_says_its_averaging_time_and_its_length(run):
+    told = dict(read_run(run[1]).metadata)
+    assert (told["averaging_s"], fault(told)) == ("0.3", None)
+    for key in ("averaging_s", "characteristic_length_m"):
+        assert fault({k: v for k, v in told.items() if k != key}) == f"metadata {key} = None"
+        for bad in ("-1.0", "nan", "inf", "x"):
+            assert fault(told | {key: bad}) == f"metadata {key} = {bad!r}"
 
 
 def test_units_follow_the_size_of_the_case(cosim, run, tmp_path):

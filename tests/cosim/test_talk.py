@@ -4,6 +4,7 @@ import dataclasses
 import io
 import json
 import re
+from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -11,7 +12,7 @@ from rich.console import Console
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
-from cosim.show.console import plain
+from cosim.show.console import as_line
 from cosim.show.progress import ProgressBar
 from cosim.show.report import write_report
 from cosim.show.talk import QUIET, Talk
@@ -47,13 +48,42 @@ def test_quiet_usual_and_verbose(cosim, tmp_path):
 
 def test_a_log_file_is_appended_to_and_never_a_scenario(cosim, tmp_path):
     log = tmp_path / "log.txt"
-    log.write_text("before\n")
     assert cosim("run", CASE, *SHORT, "-q", "--log-file", log)[0] == 0
-    assert log.read_text().startswith("before\nchar")
-    file = tmp_path / "mine.toml"
+    first = log.read_text()
+    assert first.startswith("# cosim log\nchar")
+    assert cosim("run", CASE, *SHORT, "-q", "--log-file", log)[0] == 0
+    assert log.read_text().startswith(first + "char")
+    assert log.read_text().count("# cosim log") == 1
+    file, link = tmp_path / "mine.txt", tmp_path / "link.log"
     file.write_text("x")
-    code, _, err = cosim("run", CASE, *SHORT, "--log-file", file)
-    assert (code, err.count("\n"), file.read_text()) == (2, 1, "x")
+    link.symlink_to(file)
+    for name in (file, link, tmp_path, tmp_path / "no/log.txt"):
+        code, _, err = cosim("run", CASE, *SHORT, "--log-file", name)
+        assert (code, err.count("\n"), file.read_text()) == (2, 1, "x"), err
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_log_file_on_a_full_disk_is_one_line(cosim):
+    code, _, err = cosim("run", CASE, *SHORT, "-q", "--log-file", "/dev/full")
+    assert (code, err.count("\n"), "/dev/full: No space left" in err) == (1, 1, True), err
+
+
+def test_a_log_file_that_is_being_written_is_refused(cosim, tmp_path):
+    with Talk(QUIET, tmp_path / "l.log"):
+        code, _, err = cosim("run", CASE, *SHORT, "-q", "--log-file", tmp_path / "l.log")
+    assert (code, err.count("\n"), "is being written by another program" in err) == (2, 1, True), err
+
+
+def test_a_sweep_talks_like_a_run(cosim, tmp_path):
+    log = tmp_path / "l.log"
+    given = ("sweep", CASE, *SHORT, "--vary", "scenario.seed=1")
+    code, out, err = cosim(*given, "-q", "--log-file", log)
+    assert (code, err) == (0, "")
+    assert "scenario.seed = 1" in out
+    lines = log.read_text().splitlines()
+    assert lines[1].startswith("characteristic length")
+    assert [line.split(":")[0] for line in lines[3:]] == ["base", "scenario.seed = 1"]
+    assert "characteristic length" in cosim(*given, "-v")[2]
 
 
 def test_an_error_stands_in_the_log_file(tmp_path):
@@ -64,7 +94,7 @@ def test_an_error_stands_in_the_log_file(tmp_path):
 
     with pytest.raises(ValueError, match="oops"):
         fail()
-    assert (tmp_path / "l.txt").read_text().splitlines()[0] == "first"
+    assert (tmp_path / "l.txt").read_text().splitlines()[1] == "first"
     assert "oops" in (tmp_path / "l.txt").read_text()
 
 
@@ -157,10 +187,10 @@ def test_no_escape_sequence_of_a_file_or_an_argument_reaches_the_terminal(cosim,
     print_info(summary(foreign))
 
 
-def test_plain_shows_what_it_hides():
-    assert plain("Tür 3 m²") == "Tür 3 m²"
-    assert plain("a\x1b[2J\n") == "a\\x1b[2J\\n"
-    assert plain("\u202e") == "\\u202e"
+def test_a_line_shows_what_it_hides():
+    assert as_line("Tür 3 m²") == "Tür 3 m²"
+    assert as_line("a\x1b[2J\n") == "a\\x1b[2J\\n"
+    assert as_line("\u202e") == "\\u202e"
 
 
 def test_markup_in_the_name_of_a_scenario(cosim, tmp_path):
