@@ -14,6 +14,7 @@ import pytest
 from cosim.cli import main
 from cosim.recording.reader import read_run
 from cosim.scenario.finding import locate
+from cosim.show.talk import Talk
 from cosim.study.command import run_sweep
 from cosim.study.table import Table
 from coupling.interface import SimulationError
@@ -294,6 +295,6 @@ def test_all_processes_of_a_sweep_read_the_same_file(tmp_path, monkeypatch):
         seen.append(scenario)
 
     monkeypatch.setattr("cosim.study.command.sweep", spy)
-    content = run_sweep(FLOE, ["ice.thickness=1 m"], (), False, 2, Table(None))
+    content = run_sweep(FLOE, ["ice.thickness=1 m"], (), False, 2, Table(None), Talk())
     assert content["scenario"].startswith("mine")
     assert seen == [str(tmp_path / "scenarios" / FLOE / "scenario.toml")]

@@ -17,7 +17,7 @@ from cosim.recording.reader import read_run
 from cosim.recording.records import Records
 
 ESCAPE = "\x1b]0;owned\x07\x1b[2J\u202e[/x]<b>&"
-SHOWN = "\\x1b]0;owned\\x1b[2J\\u202e[/x]<b>&"  # the bell is left out
+SHOWN = "\\x1b]0;owned\\x07\\x1b[2J\\u202e[/x]<b>&"
 
 
 def rewritten(source, target, change, **options):
@@ -189,7 +189,7 @@ def hostile(record):
         record.data = event.SerializeToString()
     if isinstance(record, Channel) and record.topic == "/events":
         hostile.events = record.id
-    if isinstance(record, Attachment) and record.name == "reference.toml":
+    if isinstance(record, Attachment) and record.name == "reference.toml" and hostile.reference:
         name = json.dumps(ESCAPE)
         text = record.data.decode().split("[[feature]]")[1].replace('name = "', f"name = {name} #", 1)
         record.data = f"title = {name}\n[[feature]]{text}".encode()
@@ -197,14 +197,19 @@ def hostile(record):
 
 
 def test_no_text_of_a_recording_commands_the_terminal_or_a_page(cosim, run_file, tmp_path):
-    hostile.events = None
+    hostile.events, hostile.reference = None, True
     path = rewritten(run_file, tmp_path / "x.mcap", hostile)
-    for command in (("info", path), ("compare", path)):
+    code, out, err = cosim("compare", path)
+    assert (code, out, err.count("\n"), "one line of plain text" in err) == (2, "", 1, True)
+    assert "\x1b" not in err
+    hostile.reference = False
+    path = rewritten(run_file, tmp_path / "y.mcap", hostile)
+    for command in (("info", path), ("info", path, "--events"), ("compare", path)):
         code, out, err = cosim(*command)
         assert (code, err) == (0, "")
         assert "\x1b" not in out
         assert "\u202e" not in out
-        assert SHOWN in out.replace("\n", "")
+        assert command[0] == "compare" or SHOWN in out.replace("\n", "")
     assert cosim("report", path, "-o", tmp_path / "r.html")[0] == 0
     page = (tmp_path / "r.html").read_text("utf-8")
     assert "[/x]&lt;b&gt;&amp;" in page

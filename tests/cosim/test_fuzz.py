@@ -109,7 +109,7 @@ over = "0 s"
 tolerance = 0.1
 source = "a paper"
 """
-#: the same mutations on every machine and in every run
+#: the same mutations on every machine and in every run of the same sources
 ALWAYS = settings(deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
 POSITION = st.integers(0, 10_000)
 BYTES = st.binary(min_size=1, max_size=6)
@@ -196,9 +196,7 @@ def try_scenarios(folder: Path, count: int) -> Counter[str]:
     seen: Counter[str] = Counter()
     file = folder / "s.toml"
 
-    @settings(
-        max_examples=count, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck)
-    )
+    @settings(ALWAYS, max_examples=count)
     @given(st.lists(MUTATION, min_size=1, max_size=2))
     def trial(mutations: list[tuple[str, int, bytes]]) -> None:
         data = mutated(SCENARIO, mutations)
@@ -220,9 +218,7 @@ def try_references(folder: Path, recording: Path, count: int) -> Counter[str]:
     seen: Counter[str] = Counter()
     file, before = folder / "r.toml", recording.read_bytes()
 
-    @settings(
-        max_examples=count, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck)
-    )
+    @settings(ALWAYS, max_examples=count)
     @given(st.lists(MUTATION, min_size=1, max_size=2))
     def trial(mutations: list[tuple[str, int, bytes]]) -> None:
         data = mutated(REFERENCE, mutations)

@@ -116,6 +116,7 @@ def linger(scenario, overrides, variant):
     return {f"{c}_peak": 1e6 for c in ("fx", "fz", "f")} | {
         **{f"{p}_fx_peak": 0.0 for p in ("breaking", "rotating", "sliding")},
         **{"fx_time": 1.0, "fz_time": 1.0, "fx_mean": 0.0, "wall_s": 1.0, "simulated_s": 2.0},
+        **{"averaging_s": 0.5, "not_trustworthy": ""},
     }
 
 

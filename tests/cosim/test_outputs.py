@@ -287,7 +287,8 @@ def row(variants, done, error=None):
     rows = []
     for variant in variants:
         values = {**load, **phases, "fx_mean": 1.0, "wall_s": 1.0, "simulated_s": 2.0, "error": None, "fx_ratio": 1.0}
-        rows.append({"variant": variant.name, **dict(variant.changes), **values, "fz_ratio": 1.0})
+        values |= {"averaging_s": 0.5, "not_trustworthy": "", "fz_ratio": 1.0}
+        rows.append({"variant": variant.name, **dict(variant.changes), **values})
         done(rows[-1], rows)
         if error:
             raise error

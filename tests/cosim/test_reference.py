@@ -20,22 +20,22 @@ measured = "3 MN"
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ('"3 MN"', '["4 MN", "3 MN"]', "measured = ['4 MN', '3 MN']: from high to low; turn the pair round"),
+        ('"3 MN"', '["4 MN", "3 MN"]', "measured = ['4 MN', '3 MN']: a range goes from the lower to the higher value"),
         ('"3 MN"', '["1 MN", "2 MN", "3 MN"]', "give one value or a pair"),
         ('"3 MN"', "3", "a quantity needs its unit"),
         ('"3 MN"', "{}", "a quantity needs its unit"),
         ('"3 MN"', '"nan MN"', "not a finite number"),
-        ('"s"', "7", "source is missing or no text"),
+        ('"s"', "7", "source = 7: one line of plain text is wanted"),
         ('"split"\nunit', "3\nunit", "event = 3: input should be"),
         ('"split"\nunit', '"split"\ncomponent = "fq"\nunit', "component = 'fq': use one of fx, fy, fz, f"),
         ('"split"\nunit', '"split"\ncomponent = ["fx"]\nunit', "component = ['fx']: input should be a valid string"),
         ('"event_load"\nevent = "split"', '"peak_load"\nphase = "x"', "phase = 'x': use one of breaking"),
-        ('"event_load"', '["event_load"]', "quantity is missing or no text"),
+        ('"event_load"', '["event_load"]', "quantity = ['event_load']: one line of plain text is wanted"),
         ('"event_load"', '"event_lode"', "did you mean event_load"),
-        ('"3 MN"', '"3 MN"\ntolerance = "much"', "tolerance = 'much': give a number >= 0"),
-        ('"3 MN"', '"3 MN"\ntolerance = -0.1', "tolerance = -0.1: give a number >= 0"),
-        ('"3 MN"', '"3 MN"\nover = "-1 s"', "give a time > 0"),
-        (GOOD, "feature = [1]", "feature = 1: not a table"),
+        ('"3 MN"', '"3 MN"\ntolerance = "much"', "tolerance = 'much': a number above 0 is wanted"),
+        ('"3 MN"', '"3 MN"\ntolerance = -0.1', "tolerance = -0.1: a number above 0 is wanted"),
+        ('"3 MN"', '"3 MN"\nover = "-1 s"', "over = '-1 s': give a time, for example"),
+        (GOOD, "feature = [1]", "feature = 1: write each as a table"),
         (GOOD, "feature = 1", "no features"),
         (GOOD, "[[feature]", "not valid TOML"),
     ],
@@ -56,7 +56,7 @@ def test_other_encodings_are_one_line_and_a_mark_of_utf8_is_none(tmp_path):
     assert load_reference(file).features[0].measured == (3e6, 3e6)
     for data in (GOOD.encode("utf-16"), GOOD.replace("title", 'x = "\xe9"\ntitle').encode("latin-1")):
         file.write_bytes(data)
-        with pytest.raises(FeatureError, match="not UTF-8"):
+        with pytest.raises(FeatureError, match="not in UTF-8"):
             load_reference(file)
 
 
