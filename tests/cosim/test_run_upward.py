@@ -105,7 +105,7 @@ def test_a_sheet_that_leaves_the_water_is_an_event():
     port.sheet.state.q[:, 0] = 1.01 * port.watch.draft
     (event,) = port.watch.lifted_out(np.zeros(3))
     assert event.kind == "out_of_water"
-    assert "draft of 0.46 m" in event.text
+    assert "draft of 0.458 m" in event.text
     assert port.watch.lifted_out(np.zeros(3)) == []
 
 
