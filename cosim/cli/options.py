@@ -13,6 +13,9 @@ import typer
 ScenarioArgument = Annotated[str, typer.Argument(help="scenario folder, TOML file, or name from `cosim list`")]
 RunArgument = Annotated[Path, typer.Argument(help="recording (.mcap)")]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="A.B=V", help="override a value of the scenario")]
+SeriesSetOption = Annotated[
+    list[str] | None, typer.Option("--set", metavar="A.B=V", help="a key of series.toml, for example fx.unit=kN")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="one JSON object on standard output")]
 QuietOption = Annotated[bool, typer.Option("-q", "--quiet", help="warnings, errors and the result only")]
 VerboseOption = Annotated[bool, typer.Option("-v", "--verbose", help="every event, and what was chosen")]

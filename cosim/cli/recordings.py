@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from cosim.cli.options import JsonOption, RunArgument
+from cosim.cli.options import JsonOption, RunArgument, SeriesSetOption
 from cosim.cli.output import print_json, writable
 from cosim.errors import InputError
 
@@ -40,26 +40,36 @@ def replay(
 
 
 def compare(
-    recording: RunArgument,
-    reference: Annotated[Path | None, typer.Argument(help="reference.toml or its folder; default: of the run")] = None,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN... [REFERENCE] [SERIES]",
+            help="recordings; reference.toml or its folder, default: of the run; a measured series (.csv, .parquet, "
+            "series.toml) or as the last of several recordings another run",
+        ),
+    ],
+    settings: SeriesSetOption = None,
+    pictures: Annotated[Path | None, typer.Option(help="folder for pictures of run and series (.png)")] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Put the features of a recording beside what was measured and what others computed."""
-    from cosim.analysis import compare as comparison
-    from cosim.analysis.lights import trust
-    from cosim.baselines.beside import beside
+    """Put the features of recordings beside what was measured and what others computed, and beside a series."""
+    from cosim.cli.comparing import compared
     from cosim.recording.reader import read_run
-    from cosim.show.baseline_tables import print_beside
-    from cosim.show.tables import print_compare
+    from cosim.series.beside import sort_files
+    from cosim.series.compare import files as beside_series
+    from cosim.show.series_tables import write_pictures
 
-    data = read_run(recording)
-    name, loaded = comparison.reference_of(data, reference)
-    rows, design = comparison.compare(data, loaded), beside(data)
+    asked = sort_files(files)
+    if asked.series is None and (settings or pictures):
+        raise InputError("--set and --pictures belong to a series; name its file, for example measured.csv")
+    runs = [read_run(run) for run in asked.runs]
+    pairs = [None] * len(runs) if asked.series is None else beside_series(asked.series, runs, settings or ())
+    objects = [compared(run, asked.reference, pair, as_json) for run, pair in zip(runs, pairs, strict=True)]
+    for pair in pairs:
+        if pair is not None and pictures is not None:
+            write_pictures(pair, pictures)
     if as_json:
-        print_json({**comparison.to_json(data, name, rows), "design": design, "trust": trust(data)})
-    else:
-        print_compare(loaded.title, rows, trust(data))
-        print_beside(design)
+        print_json(objects[0] if len(objects) == 1 else objects)
 
 
 def info(
@@ -102,11 +112,16 @@ def recover(
 def report(
     recording: RunArgument,
     output: Annotated[Path, typer.Option("-o", "--output", help="the page (.html)")],
+    series: Annotated[Path | None, typer.Option(help="a measured series, as of `cosim compare`")] = None,
+    settings: SeriesSetOption = None,
 ) -> None:
-    """One HTML page of a recording: loads by phase, balances, events, numbers beside the reference."""
+    """One HTML page of a recording: loads by phase, balances, events, numbers beside reference and series."""
     from cosim.recording.reader import read_run
+    from cosim.series.compare import files
     from cosim.show.console import print_line
     from cosim.show.report import write_report
 
-    write_report(read_run(recording), writable(output))
+    run = read_run(recording)
+    measured = None if series is None else files(series, [run], settings or ())[0]
+    write_report(run, writable(output), measured)
     print_line(f"{output}: written")
