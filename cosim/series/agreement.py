@@ -71,4 +71,4 @@ def wasserstein(s: Array, m: Array) -> float:
 
 def kolmogorov_smirnov(s: Array, m: Array) -> float:
     """``max |F_s(x) - F_m(x)|`` [-]; best 0, from 0 to 1. A distance; values of a series are no independent draws."""
-    return float(ks_2samp(s, m).statistic)
+    return float(ks_2samp(s, m, method="asymp").statistic)

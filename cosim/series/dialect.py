@@ -8,11 +8,13 @@ are an error and no guess.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import datetime
 from itertools import product
 
 from cosim.series.cells import STAMP, Dialect, is_missing
-from cosim.series.description import Text
+from cosim.series.description import Text, TimeColumn
 from cosim.series.told import Told
 
 DELIMITERS = ("\t", ";", ",", "|", " ")
@@ -29,19 +31,32 @@ class Found:
     rows: int
 
 
-def is_row(fields: list[str], dialect: Dialect) -> bool:
+def row_like(dialect: Dialect, time: TimeColumn) -> Callable[[list[str]], bool]:
     """Whether fields are numbers, stamps and missing values, with at least one number."""
-    count = 0
-    for cell in fields:
-        if dialect.is_number(cell):
-            count += 1
-        elif not is_missing(cell) and not STAMP.fullmatch(cell):
-            return False
-    return count > 0
+
+    def is_row(fields: list[str]) -> bool:
+        numbers = [dialect.is_number(cell) for cell in fields]
+        return any(numbers) and all(
+            number or is_missing(cell) or _is_stamp(cell, time.format)
+            for cell, number in zip(fields, numbers, strict=True)
+        )
+
+    return is_row
 
 
-def find(lines: list[str], given: Text, least: int, told: Told) -> Found:
-    """Dialect of the lines; ``least`` fields make a row."""
+def _is_stamp(cell: str, form: str | None) -> bool:
+    if form is None:
+        return STAMP.fullmatch(cell) is not None
+    try:
+        datetime.strptime(cell, form)
+    except ValueError:
+        return False
+    return True
+
+
+def find(lines: list[str], given: Text, time: TimeColumn, told: Told) -> Found:
+    """Dialect of the lines; a row has a time and a load, or a load alone where the time has a step."""
+    least = 2 if time.step is None else 1
     sample = [line for line in lines[:SAMPLE] + lines[len(lines) // 2 :][:SAMPLE] if line.strip()]
     delimiters = (_delimiter(given.delimiter, told),) if given.delimiter else DELIMITERS
     decimals = (given.decimal,) if given.decimal else (".", ",")
@@ -49,7 +64,7 @@ def find(lines: list[str], given: Text, least: int, told: Told) -> Found:
         look
         for delimiter, decimal in product(delimiters, decimals)
         if delimiter != given.thousands and decimal != given.thousands
-        for look in _looked(sample, Dialect(delimiter, decimal, given.thousands), least)
+        for look in _looked(sample, Dialect(delimiter, decimal, given.thousands), time, least)
     ]
     if not found:
         raise told.wrong(_no_rows(sample, least))
@@ -63,13 +78,15 @@ def find(lines: list[str], given: Text, least: int, told: Told) -> Found:
             raise told.wrong(f"can be read with {a} or {b}; set text.delimiter and text.decimal")
     if not given.delimiter or not given.decimal:
         d = best.dialect
-        between, point = NAMES.get(d.delimiter, d.delimiter), NAMES.get(d.decimal, "point")
+        between = NAMES.get(d.delimiter, d.delimiter) if best.width > 1 else "nothing"
+        point = NAMES.get(d.decimal, "point")
         told.say(f"read with {between} between fields and decimal {point}")
     return best
 
 
-def _looked(sample: list[str], dialect: Dialect, least: int) -> list[Found]:
-    rows = [fields for fields in map(dialect.fields, sample) if len(fields) >= least and is_row(fields, dialect)]
+def _looked(sample: list[str], dialect: Dialect, time: TimeColumn, least: int) -> list[Found]:
+    is_row = row_like(dialect, time)
+    rows = [fields for fields in map(dialect.fields, sample) if len(fields) >= least and is_row(fields)]
     if not rows:
         return []
     width, count = Counter(map(len, rows)).most_common(1)[0]
@@ -95,7 +112,7 @@ def _no_rows(sample: list[str], least: int) -> str:
 def _is_grouped(line: str) -> bool:
     """Whether a line is a row once grouped digits are allowed."""
     return any(
-        is_row(dialect.fields(line), dialect) and len(dialect.fields(line)) > 1
+        len(dialect.fields(line)) > 1 and row_like(dialect, TimeColumn.model_validate({}))(dialect.fields(line))
         for delimiter in ("\t", ";", "|", ",")
         for decimal, thousands in ((",", "."), (".", ","), (".", "'"), (",", " "))
         if delimiter != decimal

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -37,6 +38,7 @@ class Look:
         """Of the series [s]."""
         return float(self.t[-1] - self.t[0])
 
+    @cached_property
     def extreme(self) -> extremes.Extreme | None:
         """Of the peaks."""
         g = self.given
@@ -88,9 +90,9 @@ SINGLE: dict[str, tuple[str, Callable[[Look], float | None]]] = {
         "N",
         lambda s: fatigue.damage_equivalent_load(s.y, s.duration, s.given.wohler, s.given.rate),
     ),
-    "return_level": ("N", _load(lambda s: None if (e := s.extreme()) is None else e.level)),
-    "return_level_low": ("N", _load(lambda s: None if (e := s.extreme()) is None else e.low)),
-    "return_level_high": ("N", _load(lambda s: None if (e := s.extreme()) is None else e.high)),
+    "return_level": ("N", _load(lambda s: None if (e := s.extreme) is None else e.level)),
+    "return_level_low": ("N", _load(lambda s: None if (e := s.extreme) is None else e.low)),
+    "return_level_high": ("N", _load(lambda s: None if (e := s.extreme) is None else e.high)),
 }
 #: of the aligned pair, simulated and measured: unit, best value and function
 PAIR: dict[str, tuple[str, float, Callable[[Array, Array], float | None]]] = {

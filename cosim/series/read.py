@@ -18,7 +18,7 @@ from cosim.series.series import Series, of_run
 from cosim.series.table import MOST_LOST, Column, Table, factor, read_text
 from cosim.series.text import read_bytes, text_of
 from cosim.series.times import times_of
-from cosim.series.told import Told
+from cosim.series.told import Told, count
 from coupling.interface import Array
 
 COMPONENTS = ("fx", "fy", "fz", "f")
@@ -47,9 +47,7 @@ def _table(path: Path, description: Description, told: Told) -> Table:
     data = read_bytes(path)
     if data.startswith(b"PAR1"):
         return _parquet(path, told)
-    return read_text(
-        text_of(data, description.text.encoding, told), description.text, description.time.step is not None, told
-    )
+    return read_text(text_of(data, description.text.encoding, told), description, told)
 
 
 def _parquet(path: Path, told: Told) -> Table:
@@ -116,25 +114,26 @@ def _in_order(t: Array, loads: dict[str, Array], told: Told) -> tuple[Array, dic
     values = np.stack(list(loads.values()), axis=1)
     good = np.isfinite(t) & np.isfinite(values).all(axis=1)
     if lost := int(np.count_nonzero(~good)):
+        text = f"{lost} of {count(len(t), 'row')} without a time or a value, the first is row {int(good.argmin()) + 1}"
         if lost > MOST_LOST * len(t):
-            raise told.wrong(f"{lost} of {len(t)} rows have no time or no value; correct the file or choose columns")
-        told.say(
-            f"{lost} of {len(t)} rows have no time or no value, the first is row {int(good.argmin()) + 1}: left out"
-        )
+            raise told.wrong(f"{text}; correct the file or choose other columns")
+        told.say(f"{text}: left out")
     t, values = t[good], values[good]
-    if len(t) and (back := int(np.count_nonzero(np.diff(t) < 0))):
-        told.say(f"times go back {back} times: rows sorted by time")
+    if back := int(np.count_nonzero(np.diff(t) < 0)):
+        told.say(f"times go back at {count(back, 'place')}: rows sorted by time")
         order = np.argsort(t, kind="stable")
         t, values = t[order], values[order]
-    once, where, count = np.unique(t, return_inverse=True, return_counts=True)
-    if len(once) < len(t):
-        told.say(f"{len(t) - len(once)} rows repeat a time, the first {t[np.diff(t) == 0][0]:g} s: their mean is taken")
-        values = np.stack([np.bincount(where, column) / count for column in values.T], axis=1)
+    once, where, times = np.unique(t, return_inverse=True, return_counts=True)
+    if more := len(t) - len(once):
+        first = once[times > 1][0]
+        told.say(f"{count(more, 'row')} with a time that was there before, the first at {first:g} s: means are taken")
+        values = np.stack([np.bincount(where, column) / times for column in values.T], axis=1)
     if len(once) < FEWEST:
-        raise told.wrong(f"{len(once)} values are no series; give at least {FEWEST}")
+        raise told.wrong(f"{count(len(once), 'value')}: no series; give at least {FEWEST}")
     step = np.diff(once)
     wide = np.flatnonzero(step > GAP * np.median(step))
     if len(wide):
         k = int(wide[step[wide].argmax()])
-        told.say(f"{len(wide)} gaps, the longest of {step[k]:.3g} s after {once[k]:.6g} s: bridged by straight lines")
+        where_to = f"the longest of {step[k]:.3g} s after {once[k]:.6g} s"
+        told.say(f"{count(len(wide), 'gap')}, {where_to}: bridged by straight lines")
     return once, dict(zip(loads, values.T, strict=True))

@@ -35,7 +35,8 @@ def period_by_spectrum(t: Array, y: Array) -> float | None:
     """``1 / f`` of the largest line of the spectrum of the whole record [s]; range (2 steps, a third of the record).
 
     Hann window, linear trend taken off, zero-padded eightfold, at least three periods in the record. None for a record
-    shorter than 16 values or without change. The twin of `cosim.analysis.features.load_period` for a plain series.
+    shorter than 16 values, without change, or whose density still rises towards longer periods. The twin of
+    `cosim.analysis.features.load_period` for a plain series.
     """
     at, load, step = even(t, y)
     if len(load) < 16 or np.ptp(load) == 0.0:
@@ -43,5 +44,6 @@ def period_by_spectrum(t: Array, y: Array) -> float | None:
     rest = load - np.polynomial.Polynomial.fit(at, load, 1)(at)
     power = np.abs(np.fft.rfft(rest * np.hanning(len(rest)), 8 * len(rest))) ** 2
     frequency = np.fft.rfftfreq(8 * len(rest), step)
-    power[frequency < 3.0 / (at[-1] - at[0])] = 0.0
-    return float(1.0 / frequency[power.argmax()]) if power.any() else None
+    first = int(np.searchsorted(frequency, 3.0 / (at[-1] - at[0])))
+    k = first + int(power[first:].argmax())
+    return float(1.0 / frequency[k]) if power[k] > max(power[k - 1], 0.0) else None

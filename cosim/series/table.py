@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from cosim.scenario.units import Unit, si_of, to_si
 from cosim.series.cells import Dialect, is_missing
-from cosim.series.description import Text
-from cosim.series.dialect import find, is_row
-from cosim.series.told import Told
+from cosim.series.description import Description
+from cosim.series.dialect import find, row_like
+from cosim.series.told import Told, count
 from coupling.interface import Array
 
 REMARKS = ("#", "%", "//", "!")
+MOST_ABOVE = 2  #: rows of numbers above the names
 MOST_LOST = 0.2  #: share of the rows that may be left out
 _NAMED = re.compile(r"(.*?)\s*(?:\[\s*([^\]]*?)\s*\]|\(\s*([^)]*?)\s*\)|\s/\s*(\S+)|\bin\s+(\S+))")
 
@@ -41,19 +43,19 @@ class Table:
         return self.dialect.numbers(cells) if isinstance(cells, list) else np.asarray(cells, dtype=float)
 
 
-def read_text(text: str, given: Text, has_step: bool, told: Told) -> Table:
+def read_text(text: str, description: Description, told: Told) -> Table:
     """Table of a text. Lines that are no rows are left out and told; too many of them are an error."""
-    lines = text.splitlines()
+    lines, given = text.splitlines(), description.text
     if lines and (match := re.fullmatch(r'"?sep=(.)"?', lines[0].strip())):
         told.say(f"line 1 names the delimiter {match[1]!r} for a spreadsheet")
         given = given if given.delimiter else given.model_copy(update={"delimiter": match[1]})
         lines[0] = ""
     marks = (given.comment,) if given.comment else REMARKS
     remark = [line.lstrip().startswith(marks) for line in lines]
-    found = find([line for line, r in zip(lines, remark, strict=True) if not r], given, 1 if has_step else 2, told)
+    found = find([line for line, r in zip(lines, remark, strict=True) if not r], given, description.time, told)
     dialect, width = found.dialect, found.width
     rows = [[] if r else dialect.fields(line) for line, r in zip(lines, remark, strict=True)]
-    first = _first(rows, width, dialect)
+    first = _first(rows, width, row_like(dialect, description.time), told)
     names, units = _head(lines[:first], dialect, width, marks, told)
     kept = _kept(rows, remark, first, width, told)
     columns = []
@@ -66,11 +68,17 @@ def read_text(text: str, given: Text, has_step: bool, told: Told) -> Table:
     return Table(tuple(columns), dialect)
 
 
-def _first(rows: list[list[str]], width: int, dialect: Dialect) -> int:
+def _first(rows: list[list[str]], width: int, is_row: Callable[[list[str]], bool], told: Told) -> int:
     """Line of the first row: it and the next two that are not empty are rows of this width."""
     at = [k for k, row in enumerate(rows) if any(row)]
-    good = [len(rows[k]) == width and is_row(rows[k], dialect) for k in at]
-    return next((at[i] for i in range(len(at)) if all(good[i : i + 3])), at[good.index(True)])
+    good = [len(rows[k]) == width and is_row(rows[k]) for k in at]
+    first = next((i for i in range(len(at)) if all(good[i : i + 3])), good.index(True))
+    if sum(good[:first]) > MOST_ABOVE:
+        line = at[good.index(False, good.index(True))] + 1
+        raise told.wrong(
+            f"lines with and without {width} numbers alternate, the first without is line {line}; correct it"
+        )
+    return at[first]
 
 
 def _kept(rows: list[list[str]], remark: list[bool], first: int, width: int, told: Told) -> list[list[str]]:
@@ -85,9 +93,9 @@ def _kept(rows: list[list[str]], remark: list[bool], first: int, width: int, tol
         elif any(row):
             odd.append((k + 1, len(row)))
     if remarks:
-        told.say(f"{remarks} remarks among the rows: passed over")
+        told.say(f"{count(remarks, 'remark')} among the rows: passed over")
     if odd:
-        text = f"{len(odd)} lines have not {width} fields, the first is line {odd[0][0]} with {odd[0][1]}"
+        text = f"{count(len(odd), 'line')} without {width} fields, the first is line {odd[0][0]} with {odd[0][1]}"
         if len(odd) > MOST_LOST * (len(kept) + len(odd)):
             raise told.wrong(f"{text}; correct the file, or set text.delimiter")
         told.say(f"{text}: left out")
@@ -103,8 +111,8 @@ def _head(
     if not heads:
         told.say(f"no names above the {width} columns: they go by number")
         if any(len(dialect.fields(text)) > 1 and not line.lstrip().startswith(marks) for text, line in bare[-1:]):
-            count = len(dialect.fields(bare[-1][0]))
-            raise told.wrong(f"{count} names stand over {width} columns; set text.delimiter and text.decimal")
+            names_there = len(dialect.fields(bare[-1][0]))
+            raise told.wrong(f"{names_there} names stand over {width} columns; set text.delimiter and text.decimal")
         return [""] * width, [None] * width
     units: list[str | None] = [None] * width
     names = heads[-1][0]
@@ -114,7 +122,7 @@ def _head(
         told.say("units stand in a row of their own under the names")
     extra = len(bare) - 1 - any(unit is not None for unit in units)
     if extra > 0:
-        told.say(f"{extra} lines above the names: passed over")
+        told.say(f"{count(extra, 'line')} above the names: passed over")
     split = [_name_and_unit(name) for name in names]
     return [name for name, _ in split], [unit or own for unit, (_, own) in zip(units, split, strict=True)]
 

@@ -11,6 +11,11 @@ class SeriesError(InputError):
     """A series that cannot be used; the message is one line with its remedy."""
 
 
+def count(n: int, what: str) -> str:
+    """So many of something."""
+    return f"{n} {what}" if n == 1 else f"{n} {what}s"
+
+
 @dataclass
 class Told:
     """Lines about a file, and its name for errors."""

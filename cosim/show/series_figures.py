@@ -13,6 +13,7 @@ import numpy as np
 from cosim.series.compare import Comparison, Pair
 from cosim.series.peaks import exceedance
 from cosim.series.spectra import spectrum
+from cosim.series.told import count
 from cosim.show.cells import over_text
 from cosim.show.scale import Scale, scale_of
 from coupling.interface import Array
@@ -73,6 +74,7 @@ def draw_exceedance(figure: Figure, _c: Comparison, pair: Pair) -> None:
     ax, scale = figure.subplots(), _scale(pair)
     for look, colour, label in _both(pair):
         height, share = exceedance(look.y[look.peaks])
+        text = f"{label}: {count(len(height), 'peak')}"
         ax.semilogy(
             look.sign * height / scale.size,
             share,
@@ -80,8 +82,9 @@ def draw_exceedance(figure: Figure, _c: Comparison, pair: Pair) -> None:
             color=colour,
             ms=4,
             lw=0.8,
-            label=f"{label}: {len(height)} peaks",
+            label=text,
         )
+    ax.axvline(0.0, color="k", lw=0.6)
     ax.set(xlabel=f"peaks of {_label(pair, scale)}", ylabel="share that exceeds it")
     ax.legend(fontsize=8)
     ax.grid(alpha=0.3, which="both")
