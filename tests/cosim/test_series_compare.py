@@ -122,7 +122,7 @@ def test_another_run_is_a_series(cosim, run_file, record, tmp_path):
     assert series["shift_s"] == pytest.approx(0.0, abs=0.005)  # straight between the middles of windows, and steps
     assert set(series["components"]) == {"fx", "fy", "fz", "f"}
     for row in series["components"]["fx"]["metrics"]:
-        assert row["ratio"] is None or row["ratio"] == pytest.approx(1.0, rel=1e-3), row["name"]
+        assert row["ratio"] is None or row["ratio"] == pytest.approx(1.0, rel=2e-3), row["name"]
 
 
 def test_command_gives_series_json_table_and_pictures(cosim, run, run_file, tmp_path):
