@@ -51,14 +51,13 @@ class Dialect:
 
     def numbers(self, cells: list[str]) -> Array:
         """(n,) numbers, nan where there is none."""
-        if self.decimal == "." and not self.thousands:
-            try:
-                values = np.array(cells, dtype=float)
-            except ValueError:
-                pass  # cells without a number: one by one
-            else:
-                return np.where(np.isfinite(values), values, np.nan)
-        return np.array([self.number(cell) for cell in cells])
+        letters = set().union(*cells)
+        if self.thousands or not letters <= set("0123456789+-eE" + self.decimal):
+            return np.array([self.number(cell) for cell in cells])
+        try:  # a column of plain numbers, quickly
+            return np.array([cell.replace(self.decimal, ".") for cell in cells], dtype=float)
+        except ValueError:
+            return np.array([self.number(cell) for cell in cells])
 
 
 _EXPONENT = str.maketrans("dD", "ee")

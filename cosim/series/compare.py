@@ -56,7 +56,7 @@ def compare_series(run: RunData, raw: Series, description: Description) -> Compa
     if len(simulated.t) < FEWEST or not np.any(simulated.loads["f"]):
         raise SeriesError(f"{run.name}: fewer than {FEWEST} windows or no load at all; give a run that meets the ice")
     laid = align(run, simulated, measured, description.align, description.scale.factor)
-    there = measured.later(-laid.shift)
+    there = measured.timed(1.0, -laid.shift)
     begin, end = max(simulated.t[0], there.t[0]), min(simulated.t[-1], there.t[-1])
     a, b = simulated.between(begin, end), there.between(begin, end)
     if min(len(a.t), len(b.t)) < FEWEST:

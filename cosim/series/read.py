@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from cosim.series.cells import Dialect
 from cosim.series.description import Description, LoadColumn
 from cosim.series.pick import pick
 from cosim.series.sensor import at_run_scale, without_zero
-from cosim.series.series import Series, of_run
+from cosim.series.series import Series, as_series
 from cosim.series.table import MOST_LOST, Column, Table, factor, read_text
 from cosim.series.text import read_bytes, text_of
 from cosim.series.times import times_of
@@ -30,9 +31,8 @@ def read_series(path: Path, description: Description) -> Series:
     """The series at the scale of the run, its zero taken off; what was done is in ``told``."""
     told = Told(path.name)
     if path.suffix.lower() == ".mcap":
-        told.say("another run: its loads are those of single windows")
-        raw = of_run(read_run(path), 0.0)
-        series = Series(path.name, raw.t, {n: raw.loads[n] for n in COMPONENTS if np.any(raw.loads[n])})
+        told.say("another run: its loads are constant in each window")
+        series = as_series(read_run(path))
         if not series.loads:
             raise told.wrong("no load in this recording; give one in which ice meets the structure")
     else:
@@ -40,7 +40,7 @@ def read_series(path: Path, description: Description) -> Series:
         t, loads = _columns(table, description, told)
         series = Series(path.name, *_in_order(t, loads, told))
     series = at_run_scale(without_zero(series, description, told), description, told)
-    return Series(series.name, series.t, series.loads, tuple(told.lines))
+    return replace(series, told=tuple(told.lines))
 
 
 def _table(path: Path, description: Description, told: Told) -> Table:

@@ -56,4 +56,4 @@ def at_run_scale(series: Series, description: Description, told: Told) -> Series
         return series
     time, force = factors(scale.factor, scale.density)
     told.say(f"scale: {scale.law} 1:{scale.factor:g}, times by {time:.6g}, forces by {force:.6g}")
-    return replace(series, t=series.t * time, loads={name: y * force for name, y in series.loads.items()})
+    return replace(series.timed(time), loads={name: y * force for name, y in series.loads.items()})

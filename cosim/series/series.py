@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cosim.analysis.run_data import COMPONENTS, RunData
-from coupling.interface import Array
+from cosim.analysis.run_data import AXES, COMPONENTS, RunData
+from cosim.analysis.sustained import running_mean
+from coupling.interface import NS, Array
 
 
 @dataclass(frozen=True)
@@ -18,25 +19,35 @@ class Series:
     t: Array  #: (n,) [s]
     loads: dict[str, Array]  #: (n,) by component fx, fy, fz, f [N]
     told: tuple[str, ...] = ()  #: what was repaired, chosen and done, line by line
+    begin: Array | None = None  #: (n,) loads are constant from here to t [s]; None: straight between the values
 
-    def later(self, seconds: float) -> Series:
-        """The same, all of it later."""
-        return replace(self, t=self.t + seconds)
+    def timed(self, factor: float, later: float = 0.0) -> Series:
+        """Times by a factor, then all of it later [s]."""
+        begin = None if self.begin is None else factor * self.begin + later
+        return replace(self, t=factor * self.t + later, begin=begin)
 
-    def between(self, begin: float, end: float) -> Series:
-        """The part between two times, both included."""
-        chosen = (self.t >= begin) & (self.t <= end)
-        return replace(self, t=self.t[chosen], loads={name: y[chosen] for name, y in self.loads.items()})
+    def between(self, first: float, last: float) -> Series:
+        """The part between two times, both included, to the nanosecond."""
+        chosen = (self.t >= first - 1.0 / NS) & (self.t <= last + 1.0 / NS)
+        begin = None if self.begin is None else self.begin[chosen]
+        return replace(self, t=self.t[chosen], loads={n: y[chosen] for n, y in self.loads.items()}, begin=begin)
 
     def mean_over(self, seconds: float) -> Series:
-        """Means over the last ``seconds``, straight between the samples; 0: as it is.
+        """Means over the last ``seconds``; 0: values as they are, those of windows at their middles.
 
-        Before the first one its value is taken. The same mean as `cosim.analysis.sustained.running_mean` takes of a
-        run, whose loads are constant in a window.
+        Before the first one its value is taken, before the first window nothing. The same mean as
+        `cosim.analysis.sustained.running_mean` takes of a run.
         """
+        begin = self.begin
+        if begin is not None and seconds > 0.0:
+            ns = [np.rint(v * NS).astype(np.int64) for v in (begin, self.t)]
+            loads = {n: running_mean(ns[0], ns[1], y, seconds) for n, y in self.loads.items()}
+            return replace(self, loads=loads, begin=None)
+        if begin is not None:
+            return replace(self, t=0.5 * (begin + self.t), begin=None)
         if seconds <= 0.0 or len(self.t) < 2:
             return self
-        return replace(self, loads={name: _mean(self.t, y, seconds) for name, y in self.loads.items()})
+        return replace(self, loads={n: _mean(self.t, y, seconds) for n, y in self.loads.items()})
 
 
 def _mean(t: Array, y: Array, seconds: float) -> Array:
@@ -56,3 +67,9 @@ def of_run(run: RunData, seconds: float) -> Series:
     taken = run.averaged(seconds)
     t = run.t if seconds > 0.0 else (run.t_ns + run.begin_ns) / 2e9
     return Series(run.name, np.asarray(t), {name: taken.component(name) for name in COMPONENTS})
+
+
+def as_series(run: RunData) -> Series:
+    """A run in the place of a measured series: components that are not zero, constant in each window."""
+    loads = {name: run.component(name) for name in AXES if np.any(run.component(name))}
+    return Series(run.name, run.t, loads, begin=run.begin_ns / NS)
