@@ -112,3 +112,19 @@ def test_command(cosim, tmp_path):
 def test_a_wrong_factor_is_one_line(factor, line):
     with pytest.raises(ScenarioError, match=line):
         factor_of(factor)
+
+
+def test_a_copy_runs_to_the_same_dimensionless_peak(cosim, tmp_path):
+    """First break of the first cone at 1:1 and at 1:4: force 64 : 1, time 2 : 1, same pieces (Table A4-1)."""
+    copy(tmp_path / "quarter.toml", "first_cone", "1/4", ["scenario.duration='2 s'"])
+    found = []
+    for case, settings in (("first_cone", ["--set", "scenario.duration='2 s'"]), (tmp_path / "quarter.toml", [])):
+        code, out, err = cosim("run", case, *settings, "-q", "--json")
+        assert code == 0, err
+        found.append(json.loads(out))
+    full, quarter = found
+    assert full["fragments"] == quarter["fragments"] > 0
+    for name in ("fx", "fz"):
+        a, b = full["peaks"][name], quarter["peaks"][name]
+        assert 64.0 * b["value"] == pytest.approx(a["value"], rel=0.01)
+        assert 2.0 * b["time"] == pytest.approx(a["time"], rel=0.01)
