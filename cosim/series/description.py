@@ -86,6 +86,7 @@ class Metrics(Section):
     prominence: float = Field(0.1, gt=0, le=1)  #: and stand out by this share of it
     wohler: float = Field(4.0, ge=1, le=20)  #: slope m of the S-N curve, for the damage-equivalent load
     rate: float = Field(1.0, gt=0, le=1000)  #: cycles per second of the damage-equivalent load
+    below_tail: float = Field(0.5, ge=0, lt=1)  #: share of the peaks below those to which the extreme load is fitted
     return_period: Time = 3600.0  #: of the extreme load [s]
     confidence: float = Field(0.9, gt=0, lt=1)  #: of its interval
 

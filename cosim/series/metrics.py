@@ -40,10 +40,13 @@ class Look:
 
     @cached_property
     def extreme(self) -> extremes.Extreme | None:
-        """Of the peaks."""
-        g = self.given
-        rate = len(self.peaks) / self.duration
-        return extremes.of_peaks(self.y[self.peaks], self.threshold, rate, g.return_period, g.confidence)
+        """Of the highest peaks, those above a share of them: where peaks begin to count is no beginning of a tail."""
+        g, heights = self.given, self.y[self.peaks]
+        if not len(heights):
+            return None
+        threshold = float(np.quantile(heights, g.below_tail))
+        tail = heights[heights > threshold]
+        return extremes.of_peaks(tail, threshold, len(tail) / self.duration, g.return_period, g.confidence)
 
 
 def look(t: Array, y: Array, largest_measured: float, contact: float, given: Metrics) -> Look:

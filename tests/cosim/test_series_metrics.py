@@ -11,6 +11,8 @@ from scipy.stats import genextreme, genpareto, norm
 
 from cosim.series import agreement, extremes, fatigue, peaks, spectra
 from cosim.series.align import contact_time, correlations
+from cosim.series.description import Metrics
+from cosim.series.metrics import look
 
 T = 0.01 * np.arange(20001)
 #: ASTM E1049-85 (2017), Figure 6: peaks and valleys, and the table of its rainflow count
@@ -201,3 +203,21 @@ def test_the_random_load_of_a_filter_has_its_mean_crossing_period():
     r = np.corrcoef(y[:-1], y[1:])[0, 1]
     expected = 2.0 * math.pi / math.acos(r)  # steps; Rice 1944 for a series in steps: acos(r) / pi crossings a step
     assert peaks.period_by_crossing(np.arange(len(y), dtype=float), y) == pytest.approx(expected, rel=0.01)
+
+
+def test_the_return_level_is_that_of_the_highest_peaks():
+    """Peaks of 7 and more, exponential by 0.3, over a level of 3: the hour is 7 + 0.3 ln(rate period), not a tail of 3.
+
+    The wrong twin fits all that counts as a peak, from a tenth of the largest load on.
+    """
+    heights = 7.0 + np.random.default_rng(8).exponential(0.3, 120)
+    t = np.arange(0.0, 600.0, 0.05)
+    y = np.interp(t, 2.5 * np.arange(240), np.stack((np.full(120, 3.0), heights), axis=1).ravel())
+    given = Metrics.model_validate({})
+    seen = look(t, y, float(y.max()), 0.05, given)
+    assert len(seen.peaks) == 119  # the last one is the end of the record
+    found, true = seen.extreme, 7.0 + 0.3 * math.log(3600.0 / 5.0)
+    assert found.low < true < found.high
+    assert found.level == pytest.approx(true, rel=0.1)
+    wrong = extremes.of_peaks(y[seen.peaks][:40], seen.threshold, 0.2, 3600.0)
+    assert wrong.low > 2.0 * true
