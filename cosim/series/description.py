@@ -19,8 +19,6 @@ from cosim.scenario.section import Section
 from cosim.scenario.units import Time, TimeOrZero, Unit, to_si
 from cosim.series.told import SeriesError
 
-_SECOND = Unit("s", "5 s")
-
 
 class Text(Section):
     """[text] How a text file is written, where that cannot be told from it."""
@@ -164,14 +162,25 @@ def _with_times(raw: dict[str, Any]) -> dict[str, Any]:
     """Times that may be negative or stand in pairs as seconds."""
     out = dict(raw)
     if isinstance(align := raw.get("align"), dict) and "shift" in align:
-        out["align"] = {**align, "shift": to_si(align["shift"], Unit("s", "7.3 s"))}
+        out["align"] = {**align, "shift": _seconds("align.shift", align["shift"])}
     if isinstance(sensor := raw.get("sensor"), dict) and "unloaded" in sensor:
         parts = sensor["unloaded"]
         well = isinstance(parts, list) and parts and all(isinstance(p, list) and len(p) == 2 for p in parts)
         if not well:
             raise PydanticCustomError("pairs", 'sensor.unloaded: give pairs of times, for example [["0 s", "5 s"]]')
-        out["sensor"] = {**sensor, "unloaded": tuple(tuple(to_si(end, _SECOND) for end in part) for part in parts)}
+        out["sensor"] = {
+            **sensor,
+            "unloaded": tuple(tuple(_seconds("sensor.unloaded", end) for end in part) for part in parts),
+        }
     return out
+
+
+def _seconds(key: str, value: object) -> float:
+    """A time of any sign [s]."""
+    try:
+        return to_si(value, Unit("s", "5 s"))
+    except PydanticCustomError as error:
+        raise PydanticCustomError("quantity", "{text}", {"text": f"{key} = {value!r}: {error.message()}"}) from None
 
 
 def _line(error: ValidationError) -> str:

@@ -98,7 +98,8 @@ def _columns(table: Table, description: Description, told: Told) -> tuple[Array,
             )
         sign = ", sign turned" if given.sign < 0 else ""
         told.say(f"{name}: column {column.name!r} in {unit}{', as set' if given.unit else ''}{sign}")
-        loads[name] = given.sign * factor(unit, "N", name, told) * table.numbers(column)
+        with np.errstate(over="ignore"):  # what is too large for a number is left out as no number
+            loads[name] = given.sign * factor(unit, "N", name, told) * table.numbers(column)
     return t, loads
 
 

@@ -71,13 +71,14 @@ def _joined(table: Table, date: Column, cells: list[str], told: Told) -> list[st
 
 def _reader(cells: list[str], told: Told) -> Callable[[str], datetime]:
     """A function that reads dates: the year first, or day and month in the order that the file proves."""
-    parts = [re.split(r"[-/.]", cell.split("T")[0].split()[0]) for cell in cells if not is_missing(cell)]
+    dated = [cell for cell in cells if STAMP.fullmatch(cell) and not CLOCK.fullmatch(cell)]
+    parts = [re.split(r"[-/.]", cell.split("T")[0].split()[0]) for cell in dated]
     if len(parts[0][0]) == 4:
         return lambda cell: _date(cell, (0, 1, 2))
     first = max(int(p[0]) for p in parts)
     second = max(int(p[1]) for p in parts)
-    if first <= 12 and second <= 12 and "." not in cells[0].split()[0]:
-        raise told.wrong(f"time: day or month first in {cells[0]!r}? set time.format, for example %d/%m/%Y %H:%M:%S")
+    if first <= 12 and second <= 12 and "." not in dated[0].split()[0]:
+        raise told.wrong(f"time: day or month first in {dated[0]!r}? set time.format, for example %d/%m/%Y %H:%M:%S")
     order = (2, 0, 1) if second > 12 else (2, 1, 0)
     told.say(f"time: dates with the {'month' if second > 12 else 'day'} first")
     return lambda cell: _date(cell, order)
@@ -118,7 +119,7 @@ def _parsed(cells: list[str], read: Callable[[str], datetime], told: Told) -> li
     for cell in cells:
         try:
             out.append(None if is_missing(cell) else read(cell))
-        except (ValueError, IndexError):
+        except (ValueError, IndexError, OverflowError):
             if not out:
                 raise told.wrong(f"time: {cell!r} cannot be read; set time.format, as of strptime") from None
             out.append(None)

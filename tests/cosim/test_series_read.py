@@ -227,3 +227,28 @@ def test_froude_scales_times_and_forces(tmp_path):
     series = read(tmp_path / "x.csv", GOOD, ["scale.factor=36"])
     np.testing.assert_allclose(series.t, 6.0 * T, atol=1e-9)
     np.testing.assert_allclose(series.loads["fx"], 36.0**3 * 1000 * F, rtol=1e-9)
+
+
+PIECES = (b";", b",", b"\n", b'"', b"1", b" ", b"-", b"9999999999", b"NaN", b"E", b":", b"/", b".", b"\xff", b"#")
+
+
+@pytest.mark.parametrize("name", TOLD)
+def test_a_damaged_file_is_read_or_one_clear_line(name, tmp_path):
+    """Characters written over, put in and taken out, by seed: never another error, never a warning."""
+    data, settings, _ = TOLD[name]
+    source, random = data if isinstance(data, bytes) else data.encode(), np.random.default_rng(len(name))
+    lines = []
+    for _ in range(15):
+        damaged = bytearray(source)
+        for k in random.integers(0, len(source) - 40, int(random.integers(1, 8))):
+            piece = PIECES[int(random.integers(len(PIECES)))]
+            damaged[k : k + int(random.integers(0, 3))] = piece
+        try:
+            series = read(tmp_path / "x.csv", bytes(damaged), settings)
+        except SeriesError as error:
+            lines.append(str(error))
+        else:
+            assert np.isfinite(series.t).all()
+            assert (np.diff(series.t) > 0).all()
+            assert np.isfinite(series.loads["fx"]).all()
+    assert not [line for line in lines if "\n" in line or len(line) > 400]
