@@ -55,7 +55,7 @@ def reference_of(run: RunData, path: str | Path | None) -> tuple[str, Reference]
     return "reference.toml", parse_reference(text, f"{run.name}/reference.toml")
 
 
-def to_json(run: RunData, name: str, rows: list[Row]) -> dict[str, Any]:
+def to_json(run: RunData, name: str | None, rows: list[Row]) -> dict[str, Any]:
     """``measured`` is a number; a range gives its middle, and ``measured_range`` both ends.
 
     ``peaks`` holds the load and the share of each phase at the peak of Fx, Fz and the resultant.

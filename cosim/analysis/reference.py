@@ -7,7 +7,7 @@ range.
 from __future__ import annotations
 
 import inspect
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -23,6 +23,7 @@ from cosim.scenario.files import is_file, parse_toml, read_toml
 from cosim.scenario.units import Unit, to_si
 from coupling.interface import PHASES
 
+HEAD = ("title", "over", "series", "feature")  #: keys of a file
 OWN_KEYS = ("name", "quantity", "unit", "thesis", "measured", "source", "tolerance", "over")
 
 
@@ -52,6 +53,7 @@ class Reference:
 
     title: str
     features: tuple[Feature, ...]
+    series: Path | None = None  #: a measured series, or its `series.toml`, beside the reference file
 
 
 def load_reference(path: str | Path) -> Reference:
@@ -60,7 +62,9 @@ def load_reference(path: str | Path) -> Reference:
     file = file / "reference.toml" if file.is_dir() else file
     if not is_file(file):
         raise FeatureError(f"{file}: no such reference; give a reference.toml or a folder that holds one")
-    return _reference(read_toml(file, FeatureError)[1], str(file))
+    data = read_toml(file, FeatureError)[1]
+    found = _reference(data, str(file))
+    return replace(found, series=file.parent / data["series"]) if "series" in data else found
 
 
 def parse_reference(text: str, origin: str) -> Reference:
@@ -69,8 +73,9 @@ def parse_reference(text: str, origin: str) -> Reference:
 
 
 def _reference(data: dict[str, Any], origin: str) -> Reference:
-    if unknown := [key for key in data if key not in ("title", "over", "feature")]:
-        raise FeatureError(f"{origin}: unknown key {unknown[0]!r}; {hint(unknown[0], ('title', 'over', 'feature'))}")
+    if unknown := [key for key in data if key not in HEAD]:
+        raise FeatureError(f"{origin}: unknown key {unknown[0]!r}; {hint(unknown[0], HEAD)}")
+    _text(f"{origin}: series", data.get("series", ""))
     features = data.get("feature")
     if not isinstance(features, list) or not features:
         raise FeatureError(f"{origin}: no features; add at least one [[feature]] with name, quantity, unit, source")

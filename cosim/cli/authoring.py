@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
@@ -50,6 +51,35 @@ def _write(folder: Path, texts: dict[str, str]) -> None:
         if made:
             folder.rmdir()
         raise
+
+
+def scale(
+    case: ScenarioArgument,
+    factor: Annotated[str, typer.Argument(help="lengths of the copy over those of the case, for example 36 or 1/36")],
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="scenario file to write (.toml)")] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """A Froude copy of a scenario: every quantity at another scale; without -o the text on standard output."""
+    from cosim.scenario.froude import factor_of, froude_copy
+    from cosim.scenario.loading import load_scenario
+    from cosim.show.console import print_line, warn
+
+    if output is not None and os.path.lexists(output):
+        raise InputError(f"{output}: is there already and is kept; name another file")
+    by = factor_of(factor)
+    made = froude_copy(load_scenario(case), by)
+    for line in made.told:
+        warn(line)
+    if output is not None:
+        with whole(output, ".toml") as part:
+            part.write_text(made.text, encoding="utf-8")
+    if as_json:
+        rows = [{"key": q.key, "from": q.before, "to": q.after, "power": str(q.power)} for q in made.quantities]
+        print_json({"factor": str(by), "quantities": rows, "told": list(made.told), "scenario": made.text})
+    elif output is None:
+        sys.stdout.write(made.text)
+    else:
+        print_line(f"{output}: {len(made.quantities)} quantities scaled; `cosim check {output}`")
 
 
 def keys(

@@ -25,6 +25,7 @@ app = typer.Typer(
 #: in the order of the help
 COMMANDS: dict[str, Callable[..., None]] = {
     "new": authoring.new,
+    "scale": authoring.scale,
     "keys": authoring.keys,
     "check": authoring.check,
     "run": simulate.run,

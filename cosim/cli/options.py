@@ -24,6 +24,9 @@ ScenarioArgument = Annotated[
 ]
 RunArgument = Annotated[Path, typer.Argument(help="recording (.mcap)")]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="A.B=V", help="override a value of the scenario")]
+SeriesSetOption = Annotated[
+    list[str] | None, typer.Option("--set", metavar="A.B=V", help="a key of series.toml, for example fx.unit=kN")
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="one JSON object on standard output")]
 ForceOption = Annotated[bool, typer.Option("--force", help="write over a recording that exists")]
 QuietOption = Annotated[bool, typer.Option("-q", "--quiet", help="warnings, errors and the result only")]

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cosim.cli.options import ForceOption, JsonOption, RunArgument
+from cosim.cli.options import ForceOption, JsonOption, RunArgument, SeriesSetOption
 from cosim.cli.output import print_json
 from cosim.errors import InputError
 from cosim.outputs import whole, writable
@@ -44,26 +44,36 @@ def replay(
 
 
 def compare(
-    recording: RunArgument,
-    reference: Annotated[Path | None, typer.Argument(help="reference.toml or its folder; default: of the run")] = None,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN... [REFERENCE] [SERIES]",
+            help="recordings; reference.toml or its folder, default: of the run; a measured series (.csv, .parquet, "
+            "series.toml) or as the last of several recordings another run",
+        ),
+    ],
+    settings: SeriesSetOption = None,
+    pictures: Annotated[Path | None, typer.Option(help="folder for pictures of run and series (.png)")] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Put the features of a recording beside what was measured and what others computed."""
-    from cosim.analysis import compare as comparison
-    from cosim.analysis.lights import trust
-    from cosim.baselines.beside import beside
-    from cosim.show.baseline_tables import print_beside
+    """Put the features of recordings beside what was measured and what others computed, and beside a series."""
+    from cosim.cli.comparing import compared
+    from cosim.series.beside import sort_files
+    from cosim.series.compare import files as beside_series
     from cosim.show.opening import opened
-    from cosim.show.tables import print_compare
+    from cosim.show.series_tables import write_pictures
 
-    data = opened(recording)
-    name, loaded = comparison.reference_of(data, reference)
-    rows, design = comparison.compare(data, loaded), beside(data)
+    asked = sort_files(files)
+    if asked.series is None and (settings or pictures):
+        raise InputError("--set and --pictures belong to a series; name its file, for example measured.csv")
+    runs = [opened(run) for run in asked.runs]
+    pairs = [None] * len(runs) if asked.series is None else beside_series(asked.series, runs, settings or ())
+    objects = [compared(run, asked.reference, pair, as_json) for run, pair in zip(runs, pairs, strict=True)]
+    for pair in pairs:
+        if pair is not None and pictures is not None:
+            write_pictures(pair, pictures)
     if as_json:
-        print_json({**comparison.to_json(data, name, rows), "design": design, "trust": trust(data)})
-    else:
-        print_compare(loaded.title, rows, trust(data))
-        print_beside(design)
+        print_json(objects[0] if len(objects) == 1 else objects)
 
 
 def info(
@@ -107,13 +117,19 @@ def recover(
 def report(
     recording: RunArgument,
     output: Annotated[Path, typer.Option("-o", "--output", help="the page (.html)")],
+    series: Annotated[Path | None, typer.Option(help="a measured series, as of `cosim compare`")] = None,
+    settings: SeriesSetOption = None,
 ) -> None:
-    """One HTML page of a recording: loads by phase, balances, events, numbers beside the reference."""
+    """One HTML page of a recording: loads by phase, balances, events, numbers beside reference and series."""
+    from cosim.series.compare import files
     from cosim.show.console import print_line
     from cosim.show.opening import opened
     from cosim.show.report import write_report
 
-    writable(output, ".html", [recording])
+    inputs = [recording] if series is None else [recording, series]
+    writable(output, ".html", inputs)
+    run = opened(recording)
+    measured = None if series is None else files(series, [run], settings or ())[0]
     with whole(output, ".html") as part:
-        write_report(opened(recording), part)
+        write_report(run, part, measured)
     print_line(f"{output}: written")

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from types import GenericAlias
 from typing import Annotated, Any
@@ -57,6 +58,14 @@ def to_si(value: object, unit: Unit) -> float:
     if not math.isfinite(magnitude):
         raise _fault("not a finite number", unit)
     return magnitude
+
+
+def dimensions(si: str) -> tuple[Fraction, Fraction, Fraction]:
+    """Powers of length, time and mass in a unit, in sixths at the finest."""
+    powers = _registry().Unit(si).dimensionality
+    found = (Fraction(powers.get(f"[{name}]", 0)).limit_denominator(6) for name in ("length", "time", "mass"))
+    length, time, mass = found
+    return length, time, mass
 
 
 def si_of(text: str) -> float:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import base64
-import io
-from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import jinja2
-from matplotlib.figure import Figure
 
 from cosim.analysis import budget
 from cosim.analysis.compare import compare, reference_of
@@ -19,21 +15,24 @@ from cosim.analysis.peaks import shares_at_peak
 from cosim.analysis.run_data import RunData
 from cosim.analysis.summary import summary
 from cosim.baselines.beside import beside
+from cosim.series.compare import Comparison
 from cosim.show.baseline_cells import beside_table, remarks
 from cosim.show.cells import COMPARED, compare_cells, over_text
 from cosim.show.figures import FIGURES, has_data
+from cosim.show.png import picture
 from cosim.show.scale import scale_of
+from cosim.show.series_tables import page_parts
 from coupling.interface import NS
 
 
-def write_report(run: RunData, out: Path) -> None:
-    """Writes the page; pictures are inside it."""
+def write_report(run: RunData, out: Path, series: Comparison | None = None) -> None:
+    """Writes the page, also of a measured series beside the run; pictures are inside it."""
     template = files("cosim.show").joinpath("report.html.j2").read_text("utf-8")
     page = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined).from_string(template)
-    out.write_text(page.render(content(run)), "utf-8")
+    out.write_text(page.render(content(run, series)), "utf-8")
 
 
-def content(run: RunData) -> dict[str, Any]:
+def content(run: RunData, series: Comparison | None = None) -> dict[str, Any]:
     """What the page shows, ready for its template."""
     design = beside(run)
     head, design_rows = beside_table(design)
@@ -48,6 +47,7 @@ def content(run: RunData) -> dict[str, Any]:
         "rows": _rows(run),
         "figures": figures,
         "shares": shares,
+        "series": [] if series is None else page_parts(series),
         "budget": budget.rows(run),
         "bound": budget.largest_residual(run),
         "design": {"head": head, "rows": design_rows, "remarks": remarks(design)},
@@ -73,12 +73,3 @@ def _rows(run: RunData) -> list[tuple[str, ...]]:
         return []
     _, reference = reference_of(run, None)
     return [(*compare_cells(row), row.feature.source) for row in compare(run, reference)]
-
-
-def picture(title: str, draw: Callable[[Figure, RunData], None], run: RunData) -> dict[str, str]:
-    """A figure as PNG for an HTML page."""
-    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
-    draw(figure, run)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=130)
-    return {"title": title, "png": base64.b64encode(buffer.getvalue()).decode()}
