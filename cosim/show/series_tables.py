@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from cosim.outputs import whole, writable
 from cosim.series.compare import Comparison, Pair, agreement_rows, rows
 from cosim.show.cells import number
 from cosim.show.console import new_table, print_line, stdout
