@@ -154,6 +154,10 @@ class EnergyBooks:
         pull = pull_on(e.springs_u, self._held_cells, live, self._held, (u + e.alpha * u_dot).ravel())
         return float(pull) - float(force_u.ravel()[self._held].sum())
 
+    def on_held(self, nodes: IntArray, force: Array) -> float:
+        """Part along x of contact forces (m, 3) on nodes (m,) that are held: these pass it on at once [N]."""
+        return float(force[self._held[2 * nodes], 0].sum())
+
     def _kinetic(self, s: State, present: BoolArray) -> float:
         e = self.engine
         return 0.5 * float(
@@ -177,7 +181,7 @@ class EnergyBooks:
                 book = self.load(load.name)
                 book.add(dt * b, load.force_u, s.u_dot)
                 book.work += dt * b * float(np.vdot(load.force_q, s.q_dot))
-            self.hold += dt * b * self.holding(s.u, s.u_dot, force_u, live)
+            self.hold += dt * b * (self.holding(s.u, s.u_dot, force_u, live) - self.on_held(nodes, stage.contact))
             rate = self.springs(s.u_dot, s.q_dot, live)
             water = float(weighted_square(e.C_q, s.q_dot, present))
             self.damping += dt * b * (water + 2.0 * e.alpha * rate)

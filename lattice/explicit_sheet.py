@@ -121,7 +121,7 @@ class ExplicitSheet(Floe):
         w.note(time, before, e.displacement(), self.support.held)
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
-        self._hold(w, time, out.hold)
+        self._hold(w, time, out.hold - self.energy.on_held(contact.nodes, out.contact))
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > self.lively * self.energy.stored
@@ -194,7 +194,7 @@ class ExplicitSheet(Floe):
     # ---- energy ------------------------------------------------------------------------------------------------
 
     def _hold(self, w: Window, time: float, hold: float) -> None:
-        """Books forces of the held nodes along x [N] for a time [s]; what loads bring to these at once is not held."""
+        """Books forces of held nodes along x [N] for a time [s]; what loads and contact bring to these is not held."""
         on_held = self.support.held[w.load.row * self.grid.ny + w.load.column]
         impulse = time * (hold - float(w.load.force[on_held, U_X].sum()))
         self.energy.hold += impulse
@@ -221,7 +221,7 @@ class ExplicitSheet(Floe):
         """
         v, time = self.engine.get(self.engine.motion.v), part * self.engine.dt
         f = touch.at_once()
-        self._hold(w, time, self.engine.hold())
+        self._hold(w, time, self.engine.hold() - self.energy.on_held(f.row * w.columns + f.column, f.force))
         self.energy.touch.add(time, f.force, v[f.row * w.columns + f.column])
         nodes = w.load.row * w.columns + w.load.column
         for name, of in w.by_name():

@@ -98,6 +98,7 @@ class Sheet(Floe):
         live, present = self.live_cells, self.present
         self.energy.book_step(step, loads, contact.nodes, live, present)
         applied = self.support.applied(loads)
+        applied = applied._replace(held=applied.held + self.energy.on_held(contact.nodes, step.contact_mean))
         out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), live, present, applied)
         out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
         out.contact_nodes = contact.nodes
@@ -129,8 +130,8 @@ class Sheet(Floe):
         force = contact.evaluate(t + self.dt, end)[0]
         mean = plan.serve(self.energy, old, end, force, contact)
         out = Outcome(mean, contact.nodes, force, parts=self.parts)
-        cubic = of_cubic(old, state, self.dt)
-        out.reaction = between(self.support, old, state, self.dt, cubic, live, present, Applied({}))
+        cubic, on_held = of_cubic(old, state, self.dt), Applied({}, self.energy.on_held(contact.nodes, mean))
+        out.reaction = between(self.support, old, state, self.dt, cubic, live, present, on_held)
         self.state, self.utilisation = state, utilisation
         if plan.served == plan.windows:
             self.energy.book_step(plan.step, (), contact.nodes, live, present)

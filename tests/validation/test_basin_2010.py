@@ -186,3 +186,20 @@ def test_with_open_cracks_the_165_m_floe_with_its_rubble_runs_for_five_minutes()
     ledger = scheduler.ledger
     errors = {"momentum_error": ledger.momentum_error, "angular_momentum_error": ledger.angular_momentum_error}
     check_balances(errors, seen, ledger.initial_mass, OPEN)
+
+
+@pytest.mark.parametrize("propagation", ["quasi-static", "dynamic"])
+def test_what_a_contact_brings_to_held_nodes_is_not_lost(propagation):
+    """A plane as wide as the sheet presses on the corners of its held sides too, which pass the force on at once."""
+    sheet = (
+        "sheet.sides='held'",
+        "sheet.nodes=[31, 3]",
+        f"fracture.propagation='{propagation}'",
+        "fracture.cracks='open'",
+    )
+    result, seen = run("upward_plane", *sheet, "scenario.duration='0.5 s'")
+    push = max(abs(load[0]) for load in seen.load)
+    assert push > 0.0
+    assert result.ledger["energy_residual"] < 1e-6
+    residual = np.array([b["fx_residual"] for b in seen.budget])
+    assert np.abs(residual).max() < (1e-6 if propagation == "quasi-static" else 1e-3) * push
