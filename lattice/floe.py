@@ -139,10 +139,14 @@ class Floe(ABC):
         live = self.live_cells
         self.present[nodes] = False
         cells = np.flatnonzero(np.isin(self.grid.cell_nodes, nodes).any(axis=1) & self.intact)
-        self.energy.book_departure(nodes, live & ~self.live_cells, self.state, crushed=True)
+        self.depart(nodes, live, crushed=True)
         self.intact[cells] = False
         if len(cells):
             self.engine.remove(cells)
+
+    def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
+        """Books ice that has left with its ``nodes``; ``live`` (cells,) are the cells that were live before."""
+        self.energy.book_departure(nodes, live & ~self.live_cells, self.state, crushed=crushed)
 
     # ---- which cells hold -------------------------------------------------------------------------------------
 
@@ -207,6 +211,6 @@ class Floe(ABC):
         for piece in pieces:
             live = self.live_cells
             self.present[piece] = False
-            self.energy.book_departure(piece, live & ~self.live_cells, self.state)
+            self.depart(piece, live)
             out.pieces.append(piece)
             release(piece)

@@ -119,9 +119,9 @@ class CrackingSheet(ExplicitSheet):
         whole[layered.cell[deep]] = False
         return hinges(self.grid, whole, layered.cell[deep], self.present, self.held, self.share)
 
-    def retire(self, nodes: IntArray) -> None:
-        """As `Floe.retire`."""
-        super().retire(nodes)
+    def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
+        """As `Floe.depart`; a layered cell goes with the first of its nodes, and is booked once."""
+        super().depart(nodes, live, crushed=crushed)
         self.engine.layered.drop(self._gone())
 
     def _gone(self) -> BoolArray:
@@ -151,7 +151,6 @@ class CrackingSheet(ExplicitSheet):
         self._release_loose(out, release, turned)
         if out.pieces:
             out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
-            self.engine.layered.drop(self._gone())  # with the energy that `book_departure` has booked
 
     def _cut(self, mask: BoolArray, out: Outcome) -> None:
         """Cells that part a piece which has turned too far carry nothing any more."""
