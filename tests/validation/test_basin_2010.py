@@ -17,7 +17,7 @@ COMMON = ("ice", "water", "structure", "contact", "drift", "fracture", "coupling
 
 #: shares that are measured: a run stops itself at 1e-12 of the mass, 1e-9 of a momentum and 1e-2 of the energy
 MASS, MOMENTUM, ENERGY = 1e-14, 1e-12, 1e-4
-#: residual of the force budget of a window: exact to rounding in steps of the implicit engine; the explicit one looks at
+#: residual of the force budget of a window: exact to rounding in steps of the implicit engine; the explicit one sees
 #: water and weight every 5 ms (measured: 0.3 % along x and z, 0.1 % along z at 2 ms)
 OPEN, CLOSING = {"fx": 1e-9, "fz": 1e-9}, {"fx": 5e-3, "fz": 5e-3}
 #: implicit engine, cells that carry nothing when they have failed
