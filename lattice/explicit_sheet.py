@@ -98,8 +98,8 @@ class ExplicitSheet(Floe):
         self._end(window, out)
         mean, applied = window.mean(self.dt), window.applied(self.dt)
         whole = Mean(mean, mean, 1.0, 0.0)
-        out.reaction = r = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)
-        r.held = (window.hold / self.dt, r.held[1])
+        held = window.hold / self.dt
+        out.reaction = between(self.support, start, self.state, self.dt, whole, held, present, applied)
         return out
 
     def _begin(self, w: Window) -> None:
@@ -115,10 +115,10 @@ class ExplicitSheet(Floe):
         e, contact = self.engine, w.contact
         steps = min(self.block, e.sub_steps - done)
         touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
-        before = e.displacement()
+        _, before = e.displacement()
         out = e.march(steps, w.load, touch, self._lively)
         time = out.steps * e.dt
-        w.note(time, before, e.displacement(), self.support.held)
+        w.note(time, before, e.displacement()[1])
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
         self._hold(w, time, out.hold - self.energy.on_held(contact.nodes, out.contact))

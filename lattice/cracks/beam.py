@@ -16,7 +16,7 @@ import numpy as np
 
 from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, law_of
-from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.forces import NOTHING, indenter
 from lattice.explicit.layout import W
 from lattice.grid import BoolArray, Grid, IntArray
 from lattice.ice import Ice
@@ -98,17 +98,13 @@ class BeamTest:
     def strength(self) -> float:
         """Nominal strength at the largest force, 6 F a / (w h^2) with the arm a of `CutBeam` [Pa]."""
         e, tip, block = self.engine, self.cut.tip, 8
-        everything, row, column = np.ones(self.cut.grid.nodes, bool), *np.divmod(tip, self.cut.grid.ny)
+        everything = np.ones(self.cut.grid.nodes, bool)
         e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), everything)
         e.start(State.rest(self.cut.grid.nodes), everything, ())
         spring = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2  # soft for the sub-step, stiff against the beam
-        tangent = np.zeros((len(tip), 3, 3))
-        tangent[:, W, W] = -spring
-        at_node, none, largest, mean, t = np.zeros(len(tip)), np.zeros((len(tip), 3)), 0.0, 0.0, 0.0
-        at = np.zeros((len(tip), 3))
-        touch = Touch(row, column, at_node, at_node, at, none, tangent)
+        touch, largest, mean, t = indenter(tip, self.cut.grid.ny, spring), 0.0, 0.0, 0.0
         while t < 8.0 * e.window:
-            at[:, W] = -self.speed * (t + 0.5 * block * e.dt)
+            touch.at[:, W] = -self.speed * (t + 0.5 * block * e.dt)
             made = e.march(block, NOTHING, touch, lively=False)
             t += made.steps * e.dt
             if made.failed:

@@ -23,7 +23,7 @@ from scipy.optimize import fsolve
 from cosim.verify.case import CaseResult, Figure, near, value
 from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, N
-from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.forces import NOTHING, indenter
 from lattice.explicit.layout import W
 from lattice.grid import Array, Grid
 from lattice.ice import Ice
@@ -117,13 +117,11 @@ def _push(e: CrackingEngine, depth: float, seconds: float) -> Arch:
     g, block = e.grid, 20
     middle = np.flatnonzero(np.abs(g.xy[:, 0] - g.xy[:, 0].mean()) < g.d)
     e.mesh.held[1:] = 0.0  # `Marched.hold` is what the wall on the left takes
-    spring, m = 0.1 * float(e.inertia_q[3 * middle].min()) / e.dt**2, len(middle)
-    at, tangent, zero = np.zeros((m, 3)), np.zeros((m, 3, 3)), np.zeros(m)
-    tangent[:, W, W] = -spring
-    touch = Touch(*np.divmod(middle, g.ny), zero, zero, at, np.zeros((m, 3)), tangent)
+    spring = 0.1 * float(e.inertia_q[3 * middle].min()) / e.dt**2
+    touch = indenter(middle, g.ny, spring)
     rows, blocks, width = [], round(seconds / (block * e.dt)), WIDE * g.d
     for k in range(blocks):
-        at[:, W] = -depth * (k + 0.5) / blocks
+        touch.at[:, W] = -depth * (k + 0.5) / blocks
         made = e.march(block, NOTHING, touch, lively=False)
         rows.append((-float(e.at(middle)[:, W].mean()), -float(made.contact[:, W].sum()) / width, made.hold / width))
     size = max(1, blocks // 100)

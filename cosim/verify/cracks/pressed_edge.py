@@ -17,7 +17,7 @@ from cosim.verify.case import CaseResult, Figure, near, value
 from lattice.cracks.beam import Beam, layer_strength
 from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import law_of
-from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.forces import NOTHING, indenter
 from lattice.explicit.layout import W
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
@@ -108,12 +108,10 @@ def pressed(p: dict[str, Any], d: float, *, turned: bool = False) -> Pressed:
     e.set_cells(live, np.full(g.cells, ice.sigma_t), everything)
     e.start(State.rest(g.nodes), everything, ())
     tip = np.flatnonzero(sheet.share)
-    tangent, at, none = np.zeros((len(tip), 3, 3)), np.zeros((len(tip), 3)), np.zeros(len(tip))
-    tangent[:, W, W] = -p["stiffness"] * sheet.share[tip]
-    touch = Touch(*np.divmod(tip, g.ny), none, none, at, np.zeros((len(tip), 3)), tangent)
+    touch = indenter(tip, g.ny, p["stiffness"] * sheet.share[tip])
     w, force, first = [], [], np.nan
     for block in range(blocks):
-        at[:, W] = -p["way"] * (block + 0.5) / blocks
+        touch.at[:, W] = -p["way"] * (block + 0.5) / blocks
         done, impulse = 0, 0.0
         while done < e.sub_steps:
             made = e.march(e.sub_steps - done, NOTHING, touch, lively=False)
