@@ -42,6 +42,8 @@ def build(scenario: Scenario) -> Scheduler:
     structure = build_structure(scenario)
     ice = build_ice(scenario)
     sheet = build_sheet(scenario, ice, structure)
+    if scenario.water.tops == "flood":
+        sheet.flood(filling_rate(scenario))
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
     contact = CONTACTS[scenario.contact.model]
@@ -93,6 +95,13 @@ def build_ice(scenario: Scenario) -> Ice:
         beam_test=test,
         **{field: sign * value for key, (field, sign) in STRENGTHS.items() if (value := getattr(i, key)) is not None},
     )
+
+
+def filling_rate(scenario: Scenario) -> float:
+    """Part of the head on a wet top that comes per second, on the sheet as on blocks [1/s]."""
+    r = scenario.rubble
+    rates: dict[str, float] = {"full": math.inf, "none": 0.0, "filling": 1.0 / r.filling_time}
+    return rates[r.backfill]
 
 
 def build_structure(scenario: Scenario) -> Structure:

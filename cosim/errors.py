@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from coupling.interface import SimulationError
-
 
 class InputError(ValueError):
     """Bad input (exit 2): the message names what is wrong, which value, and what to do."""
@@ -15,6 +13,8 @@ class FailedError(RuntimeError):
 
 def explain(error: Exception) -> tuple[str, int]:
     """The line and the exit code of an error; an unexpected one is named as such."""
+    from coupling.interface import SimulationError  # numpy comes with it: not for `--help`
+
     if isinstance(error, InputError):
         return str(error), 2
     if isinstance(error, FailedError | SimulationError):
@@ -23,4 +23,6 @@ def explain(error: Exception) -> tuple[str, int]:
         return f"{error.format_message()} (`cosim --help` shows the commands)", 2
     if isinstance(error, OSError) and error.filename:
         return f"{error.filename}: {error.strerror}; check the path", 2
+    if isinstance(error, OSError):  # files are named by whoever writes them
+        return f"standard output: {error.strerror or error}; what it leads to takes no more", 1
     return f"unexpected {type(error).__name__}: {error}; set COSIM_TRACEBACK=1 to see where, and report it", 1

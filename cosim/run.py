@@ -5,31 +5,32 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from cosim.analysis.run_data import COMPONENTS
-from cosim.analysis.sustained import SUSTAINED, running_mean
+from cosim.analysis.lights import trust
+from cosim.analysis.run_data import AXES, COMPONENTS, RunData
 from cosim.build import build, run_info
 from cosim.observer import Observer
+from cosim.scenario.lengths import characteristic_length
 from cosim.scenario.scenario import Scenario
-from coupling.interface import NS, PHASES, Array, Event, Frame
+from coupling.interface import NS, PHASES, Array, Event, Frame, IntArray, SimulationError
 from coupling.scheduler import Scheduler
 
 
 class Peaks:
-    """Largest mean load of a window, by component; f is the resultant."""
+    """Largest load, by component; f is the resultant."""
 
-    def __init__(self) -> None:
+    def __init__(self, t_ns: IntArray, load: Array) -> None:
+        """Of loads (n, 3) at the ends of windows (n,)."""
         self.value, self.t_ns = np.zeros(4), np.zeros(4, np.int64)
-
-    def see(self, t_ns: int, load: Array) -> None:
-        """Takes in the load (3,) of a window."""
-        now = np.array([*load, np.linalg.norm(load)])
-        higher = np.abs(now) > np.abs(self.value)
-        self.value[higher], self.t_ns[higher] = now[higher], t_ns
+        if len(load):
+            components = np.column_stack((load, np.linalg.norm(load, axis=1)))
+            k = np.abs(components).argmax(axis=0)
+            self.value, self.t_ns = components[k, range(4)], t_ns[k]
 
     def to_json(self) -> dict[str, dict[str, float]]:
         """``{component: {"value" [N], "time" [s]}}``."""
@@ -39,23 +40,6 @@ class Peaks:
         }
 
 
-class PeaksByPhase:
-    """Peaks of the whole load and of that of each phase."""
-
-    def __init__(self) -> None:
-        self.total, self.of = Peaks(), {p: Peaks() for p in PHASES}
-
-    def see(self, t_ns: int, load: Array) -> None:
-        """Takes in the load (3, 3) of a window, rows by phase."""
-        self.total.see(t_ns, load.sum(axis=0))
-        for phase, part in zip(self.of.values(), load, strict=True):
-            phase.see(t_ns, part)
-
-    def to_json(self) -> dict[str, Any]:
-        """``peaks`` of the whole load and ``peaks_by_phase``."""
-        return {"peaks": self.total.to_json(), "peaks_by_phase": {name: p.to_json() for name, p in self.of.items()}}
-
-
 @dataclass
 class RunResult:
     """What a run came to, in SI units."""
@@ -63,29 +47,49 @@ class RunResult:
     scenario: Scenario
     wall_s: float = 0.0
     t_ns: int = 0
-    windows: PeaksByPhase = field(default_factory=PeaksByPhase)  #: of single windows
     events: list[Event] = field(default_factory=list)
     fragments: int = 0
     blocks: int = 0
     ledger: dict[str, float] = field(default_factory=dict)
     loads: list[tuple[int, Array]] = field(default_factory=list)  #: end [ns] and load (3, 3) of every window
+    staggering: list[tuple[float, float]] = field(default_factory=list)  #: Fx and Fz of every window [N]
 
     def see(self, frame: Frame) -> None:
         """Takes in one window."""
         self.t_ns = frame.t_ns
-        self.windows.see(frame.t_ns, frame.load)
         self.loads.append((frame.t_ns, frame.load))
+        self.staggering.append((frame.budget.get("fx_staggering", 0.0), frame.budget.get("fz_staggering", 0.0)))
         self.events.extend(frame.events)
+
+    @cached_property
+    def data(self) -> RunData:
+        """The run as arrays, as a recording gives them: whatever is told of it is told by the same functions."""
+        metadata = {
+            "averaging_s": repr(float(self.scenario.averaging)),
+            "window_ns": str(self.scenario.window_ns),
+            "spacing_m": repr(float(self.scenario.sheet.spacing)),
+            "characteristic_length_m": repr(characteristic_length(self.scenario.model)),
+        }
+        staggering = np.array(self.staggering).reshape(-1, 2)
+        return RunData(
+            self.scenario.name,
+            metadata,
+            np.array([t for t, _ in self.loads], np.int64),
+            np.array([load for _, load in self.loads]).reshape(-1, 3, 3),
+            tuple(self.events),
+            ledger={name: np.array([value]) for name, value in self.ledger.items()},
+            budget={"fx_staggering": staggering[:, 0], "fz_staggering": staggering[:, 1]},
+        )
 
     @property
     def peaks(self) -> Peaks:
         """Of the whole load."""
-        return self.windows.total
+        return Peaks(self.data.t_ns, self.data.lasting.load.sum(axis=1))
 
     @property
     def by_phase(self) -> dict[str, Peaks]:
         """Of the load of each phase."""
-        return self.windows.of
+        return {phase: Peaks(self.data.t_ns, self.data.lasting.load[:, k]) for k, phase in enumerate(PHASES)}
 
     def mean_load(self) -> Array:
         """Mean over the run (3,) [N]."""
@@ -93,15 +97,6 @@ class RunResult:
         for t, load in self.loads:
             impulse, before = impulse + (t - before) * load.sum(axis=0), t
         return np.asarray(impulse / max(before, 1))
-
-    def sustained(self) -> dict[str, Any]:
-        """Peaks of the mean over `SUSTAINED`, of all phases and of each."""
-        end = np.array([t for t, _ in self.loads], np.int64)
-        mean = running_mean(np.concatenate(([0], end[:-1])), end, np.array([load for _, load in self.loads]))
-        peaks = PeaksByPhase()
-        for t, load in zip(end.tolist(), mean, strict=True):
-            peaks.see(t, load)
-        return {"seconds": SUSTAINED, **peaks.to_json()}
 
     def to_json(self) -> dict[str, Any]:
         """What ``cosim run --json`` prints, but for the name of the recording."""
@@ -111,9 +106,11 @@ class RunResult:
             "simulated_s": simulated,
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s,
-            **self.windows.to_json(),
-            "sustained": self.sustained(),
-            "events": [event_json(e) for e in self.events],
+            "averaging_s": self.scenario.averaging,
+            "peaks": self.peaks.to_json(),
+            "peaks_by_phase": {phase: peaks.to_json() for phase, peaks in self.by_phase.items()},
+            "trust": trust(self.data),
+            "events": [event_json(e) for e in self.data.lasting.events],
             "fragments": self.fragments,
             "blocks": self.blocks,
             "ledger": self.ledger,
@@ -121,13 +118,11 @@ class RunResult:
 
 
 def event_json(e: Event) -> dict[str, Any]:
-    """An event as ``cosim run --json`` prints it: time [s], load [N], place [m]."""
+    """An event as ``cosim run --json`` prints it; its load is the mean over the averaging time."""
     return {
         "time": e.t_ns / NS,
         "kind": e.kind,
-        "fx": e.force[0],
-        "fy": e.force[1],
-        "fz": e.force[2],
+        **dict(zip(AXES, e.force, strict=True)),
         "cells": e.cells,
         "position": list(e.position),
         "text": e.text,
@@ -148,10 +143,12 @@ def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunR
             observer.on_start(info)
         while scheduler.t_ns < scenario.duration_ns:
             frame = scheduler.macro_step()
+            _is_finite(frame)
             result.see(frame)
             for observer in observers:
                 observer.on_frame(frame)
     _finish(result, scheduler)
+    _was_touched(result)
     result.wall_s = time.perf_counter() - began
     return result
 
@@ -175,3 +172,22 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
         "interface_exchanged": scheduler.power.exchanged,
         **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")},
     }
+
+
+def _is_finite(frame: Frame) -> None:
+    """Ends a run whose numbers are none."""
+    for what, values in (("load", frame.load), ("place of the sheet", frame.sheet.position)):
+        if not np.isfinite(values).all():
+            raise SimulationError(
+                f"t = {frame.t_ns / NS:.3f} s: the {what} is not finite; halve coupling.window and rubble.substep, "
+                "and see what `cosim check` says of the scenario"
+            )
+
+
+def _was_touched(result: RunResult) -> None:
+    """Ends a run that has met nothing: its zeros are no result."""
+    if result.loads and not any(load.any() for _, load in result.loads):
+        raise SimulationError(
+            f"the structure was never touched in {result.t_ns / NS:g} s; the ice passes it: see structure.top, "
+            "structure.toe_depth and sheet.axis_from_side, or lengthen scenario.duration"
+        )

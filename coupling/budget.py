@@ -13,6 +13,9 @@ By Newton's law for all ice, sheet and blocks, the mean force on the structure o
                       blocks exerted in it
 ====================  ===============================================================================================
 
+Named loads on the sheet have a term each; ``water_above`` and ``water_left_below`` are what the water does beyond the
+linear foundation, see `lattice.tops`.
+
 Every term is formed on its own: forces of the water and momentum from the participants, the load from the contacts.
 What is left is ``residual``. It is rounding wherever the sheet's window is solved on its own; the sheet's means are
 those of its scheme and the rubble's impulses are summed in every sub-step. In windows that are read off a long step it

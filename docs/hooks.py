@@ -7,20 +7,15 @@ is an error of the build.
 
 from __future__ import annotations
 
-import ast
-import inspect
 import re
-import types
-from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Any
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from cosim.scenario.keys import kinds_of, meanings, model_of, range_of, sections, unit_of
 from cosim.scenario.model import ScenarioModel
-from cosim.scenario.units import Unit
 
 MARKER = "<!-- scenario reference -->"
 HEAD = "| key | unit | written as | default | meaning |\n|---|---|---|---|---|\n"
@@ -50,105 +45,33 @@ def reference(model: type[BaseModel]) -> str:
     return "\n\n".join(_section(name, section) for name, section in sections(model))
 
 
-def sections(model: type[BaseModel], prefix: str = "") -> Iterator[tuple[str, type[BaseModel]]]:
-    """Every table of a scenario file: its name and its model."""
-    for name, field in model.model_fields.items():
-        inner = _model_of(field.annotation)
-        if inner is not None:
-            yield prefix + name, inner
-            yield from sections(inner, f"{prefix}{name}.")
-
-
-def _model_of(annotation: Any) -> type[BaseModel] | None:
-    for kind in (annotation, *get_args(annotation)):
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
-            return kind
-    return None
-
-
 def _section(name: str, model: type[BaseModel]) -> str:
     about = re.sub(r"^\[[\w.]+\]\s*", "", " ".join((model.__doc__ or "").split()))
     about = about[:1].upper() + about[1:]
     words = meanings(model)
     rows = []
     for key, field in model.model_fields.items():
-        if _model_of(field.annotation) is not None:
+        if model_of(field.annotation) is not None:
             continue
         if not words.get(key):
             raise ValueError(f"scenario key {name}.{key} has no meaning: write a comment #: beside it in {model}")
-        unit = _unit(field)
+        unit = unit_of(field)
         words_of_key = re.sub(r"\s*\[[^\]]*\]$", "", words[key]) if unit else words[key]
         cells = (f"`{key}`", unit.si if unit else "-", _value(field), _default(field), _cell(words_of_key))
         rows.append("| " + " | ".join(cells) + " |\n")
     return f"## [{name}]\n\n{about}\n\n{HEAD}{''.join(rows)}"
 
 
-@cache
-def meanings(model: type[BaseModel]) -> dict[str, str]:
-    """The comments ``#:`` at the end of a field's line and on the lines before it, by field."""
-    lines = inspect.getsource(model).splitlines()
-    tree = ast.parse("\n".join(lines))
-    body = tree.body[0]
-    assert isinstance(body, ast.ClassDef)
-    found = {}
-    for item in body.body:
-        if isinstance(item, ast.AnnAssign) and isinstance(item.target, ast.Name) and item.end_lineno:
-            first = item.lineno - 1
-            while lines[first - 1].strip().startswith("#:"):
-                first -= 1
-            texts = [line.partition("#:")[2] for line in lines[first : item.end_lineno]]
-            found[item.target.id] = " ".join(" ".join(texts).split())
-    return found
-
-
 def _value(field: FieldInfo) -> str:
     """What may be written: number with unit, words, limits."""
-    unit = _unit(field)
-    if unit is not None:
-        return f"`{unit.written}`"
-    words = [w for kind in _flat(field.annotation) if get_origin(kind) is Literal for w in get_args(kind)]
-    kinds = [k for k in _flat(field.annotation) if get_origin(k) is not Literal and k is not type(None)]
-    shown = [f'`"{w}"`' for w in words] + [_kind(k) for k in kinds]
-    limits = _limits(field)
+    unit = unit_of(field)
+    shown = [f"`{unit.written}`"] if unit else [f"`{part}`" if _is_toml(part) else part for part in kinds_of(field)]
+    limits = range_of(field)
     return " or ".join(shown) + (f", {limits}" if limits else "")
 
 
-def _flat(annotation: Any) -> list[Any]:
-    """The members of a union, without their annotations."""
-    if get_origin(annotation) is Annotated:
-        return _flat(get_args(annotation)[0])
-    if get_origin(annotation) in (Union, types.UnionType):
-        return [kind for part in get_args(annotation) for kind in _flat(part)]
-    return [annotation]
-
-
-def _kind(kind: Any) -> str:
-    if get_origin(kind) is tuple:
-        return "`[60, 60]`"
-    return {bool: "`true` or `false`", int: "whole number", float: "number", str: "text"}.get(kind, str(kind))
-
-
-def _constraints(field: FieldInfo) -> list[Any]:
-    """Of the field and of the members of its union."""
-    inner = [
-        m
-        for part in (field.annotation, *get_args(field.annotation))
-        if get_origin(part) is Annotated
-        for m in get_args(part)[1:]
-    ]
-    nested = [n for m in (*field.metadata, *inner) for n in getattr(m, "metadata", [m])]
-    return nested
-
-
-def _limits(field: FieldInfo) -> str:
-    signs = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
-    return " and ".join(
-        f"{signs[name]} {getattr(c, name):g}" for c in _constraints(field) for name in signs if hasattr(c, name)
-    )
-
-
-def _unit(field: FieldInfo) -> Unit | None:
-    return next((m for m in _constraints(field) if isinstance(m, Unit)), None)
+def _is_toml(part: str) -> bool:
+    return part[0] in '"[' or part in ("true", "false")
 
 
 def _default(field: FieldInfo) -> str:
@@ -156,7 +79,7 @@ def _default(field: FieldInfo) -> str:
         return "**required**"
     if field.default is None or field.default == "":
         return "-"
-    unit = _unit(field)
+    unit = unit_of(field)
     if unit is not None:
         return f"{field.default:g} {unit.si}"
     return f"`{field.default!r}`".replace("'", '"').replace("True", "true").replace("False", "false")

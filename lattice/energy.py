@@ -141,7 +141,7 @@ class EnergyBooks:
     def _stock(self, s: State, live: BoolArray, present: BoolArray, leaving: BoolArray | None = None) -> Stock:
         e = self.engine
         return Stock(
-            self.springs(s.u, s.q, live) + e.layered_energy(s.u, s.q, leaving),
+            self.springs(s.u, s.q, live) + e.lean_energy(s.u, live) + e.layered_energy(s.u, s.q, leaving),
             self._foundation(s.q, present),
             self._kinetic(s, present),
             float(momentum_of(e.inertia_u, s.u_dot, present)),
@@ -153,6 +153,10 @@ class EnergyBooks:
         e = self.engine
         pull = pull_on(e.springs_u, self._held_cells, live, self._held, (u + e.alpha * u_dot).ravel())
         return float(pull) - float(force_u.ravel()[self._held].sum())
+
+    def on_held(self, nodes: IntArray, force: Array) -> float:
+        """Part along x of contact forces (m, 3) on nodes (m,) that are held: these pass it on at once [N]."""
+        return float(force[self._held[2 * nodes], 0].sum())
 
     def _kinetic(self, s: State, present: BoolArray) -> float:
         e = self.engine
@@ -177,7 +181,7 @@ class EnergyBooks:
                 book = self.load(load.name)
                 book.add(dt * b, load.force_u, s.u_dot)
                 book.work += dt * b * float(np.vdot(load.force_q, s.q_dot))
-            self.hold += dt * b * self.holding(s.u, s.u_dot, force_u, live)
+            self.hold += dt * b * (self.holding(s.u, s.u_dot, force_u, live) - self.on_held(nodes, stage.contact))
             rate = self.springs(s.u_dot, s.q_dot, live)
             water = float(weighted_square(e.C_q, s.q_dot, present))
             self.damping += dt * b * (water + 2.0 * e.alpha * rate)
@@ -203,7 +207,7 @@ class EnergyBooks:
         """Books the elastic energy of a cell that fails in state s."""
         live = np.zeros(self.engine.grid.cells, bool)
         live[cell] = True
-        self.fracture += self.springs(s.u, s.q, live)
+        self.fracture += self.springs(s.u, s.q, live) + self.engine.lean_energy(s.u, live)
 
     def book_departure(self, nodes: IntArray, cells: BoolArray, s: State, *, crushed: bool = False) -> None:
         """Books ice that leaves with all its energy; ``cells`` is the mask of its live cells."""

@@ -20,7 +20,7 @@ from lattice.criteria.judge import Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.easing import Easing
 from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import PointForces, Touch, touch_at
+from lattice.explicit.forces import Touch, touch_at
 from lattice.explicit.layout import U_X
 from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
@@ -76,8 +76,8 @@ class ExplicitSheet(Floe):
             self.engine.set_window(dt)
             self.block = max(1, int(self._contact_time / self.engine.dt))
 
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `Floe.advance`; `release` is called with the state of that instant.
+    def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """As `Floe._advance`; `release` is called with the state of that instant.
 
         The mean contact force has a row for each node of the contact, then one for each node that left with force.
         """
@@ -98,7 +98,8 @@ class ExplicitSheet(Floe):
         self._end(window, out)
         mean, applied = window.mean(self.dt), window.applied(self.dt)
         whole = Mean(mean, mean, 1.0, 0.0)
-        out.reaction = between(self.support, start, self.state, self.dt, whole, self.live_cells, present, applied)
+        held = window.hold / self.dt
+        out.reaction = between(self.support, start, self.state, self.dt, whole, held, present, applied)
         return out
 
     def _begin(self, w: Window) -> None:
@@ -114,13 +115,13 @@ class ExplicitSheet(Floe):
         e, contact = self.engine, w.contact
         steps = min(self.block, e.sub_steps - done)
         touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
-        before, holding = e.displacement(), self._holding(w.load)
+        _, before = e.displacement()
         out = e.march(steps, w.load, touch, self._lively)
         time = out.steps * e.dt
-        w.note(time, before, e.displacement(), self.support.held)
+        w.note(time, before, e.displacement()[1])
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
-        self.energy.hold += 0.5 * time * (holding + self._holding(w.load))
+        self._hold(w, time, out.hold - self.energy.on_held(contact.nodes, out.contact))
         rate, self._loss_rate = self._loss_rate, out.loss / time
         change = abs(self._loss_rate - rate) * self.block * e.dt
         self._lively = out.failed or change > self.lively * self.energy.stored
@@ -192,12 +193,12 @@ class ExplicitSheet(Floe):
 
     # ---- energy ------------------------------------------------------------------------------------------------
 
-    def _holding(self, load: PointForces) -> float:
-        """Force along x at the held edge now, less what loads bring to it at once [N]."""
-        u, _ = self.engine.displacement(-self.engine.alpha / self.engine.dt)  # x + alpha v
-        springs = self.energy.holding(u, np.zeros_like(u), np.zeros_like(u), self.live_cells)
-        on_held = self.support.held[load.row * self.grid.ny + load.column]
-        return springs - float(load.force[on_held, U_X].sum())
+    def _hold(self, w: Window, time: float, hold: float) -> None:
+        """Books forces of held nodes along x [N] for a time [s]; what loads and contact bring to these is not held."""
+        on_held = self.support.held[w.load.row * self.grid.ny + w.load.column]
+        impulse = time * (hold - float(w.load.force[on_held, U_X].sum()))
+        self.energy.hold += impulse
+        w.hold += impulse
 
     def _book(self, w: Window, out: Marched, touch: Touch) -> None:
         """Books sub-steps that have begun with the points of the contact where ``touch`` is linear about."""
@@ -220,6 +221,7 @@ class ExplicitSheet(Floe):
         """
         v, time = self.engine.get(self.engine.motion.v), part * self.engine.dt
         f = touch.at_once()
+        self._hold(w, time, self.engine.hold() - self.energy.on_held(f.row * w.columns + f.column, f.force))
         self.energy.touch.add(time, f.force, v[f.row * w.columns + f.column])
         nodes = w.load.row * w.columns + w.load.column
         for name, of in w.by_name():

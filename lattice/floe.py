@@ -25,6 +25,7 @@ from lattice.memory import Memory, recall, remember
 from lattice.outcome import Outcome
 from lattice.reaction import Support
 from lattice.state import State, StepError
+from lattice.tops import NAMES, Tops
 
 #: area of a free piece that leaves the lattice, as a share of the floe: a larger part floats on as a floe of its own,
 #: as the halves of a split floe do (thesis 6.3); a smaller one can only be a block before the structure [-]
@@ -36,7 +37,7 @@ Release = Callable[[IntArray], None]  #: called with the nodes of a piece that l
 class Floe(ABC):
     """Lattice, state and failures of a floe that drifts with its frame."""
 
-    _written: tuple[str, ...] = ("intact", "present", "energy")  #: see `memory.remember`
+    _written: tuple[str, ...] = ("intact", "present", "energy", "tops")  #: see `memory.remember`
 
     def __init__(
         self,
@@ -62,15 +63,35 @@ class Floe(ABC):
         self.support = Support(engine)
         self.utilisation = np.zeros(grid.cells)
         self.parts = 1
+        self.tops: Tops | None = None  #: what the water does beyond the foundation; None: it is linear without end
         self._known: tuple[bytes, Standing] | None = None
 
-    @abstractmethod
+    def flood(self, filling_rate: float) -> None:
+        """From now on tops under water fill, by this part of their head per second, and lifted ice leaves the water.
+
+        See `tops`. ValueError if the rate is negative or no number.
+        """
+        self.tops = Tops.of(self.engine, filling_rate)
+        for name in NAMES:
+            self.energy.load(name)
+
     def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """One window from time t under constant loads.
+        """One window from time t under constant loads, and under the water that the foundation does not know.
 
         A piece that comes loose leaves at once: ``release`` is called with its nodes and must renew the edge of
         ``contact``. StepError where no solution is found.
         """
+        if self.tops is None:
+            return self._advance(t, loads, contact, release)
+        water = self.tops.loads(self.state, self.present, self.dt)
+        out = self._advance(t, [*loads, *water], contact, release)
+        for name in NAMES:
+            out.reaction.applied.setdefault(name, (0.0, 0.0))
+        return out
+
+    @abstractmethod
+    def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """The same under ``loads`` alone."""
 
     @abstractmethod
     def set_window(self, dt: float) -> None:
@@ -91,6 +112,8 @@ class Floe(ABC):
         self.state = self.engine.equilibrium(*total(loads, self.grid.nodes))
         self.utilisation = self._utilisation(self.state)
         self._check_rest()
+        if self.tops is not None:
+            self.tops.check_rest(self.state.q[:, 0])
         self.energy.begin(self.state, self.live_cells, self.present, loads)
 
     def _check_rest(self) -> None:
@@ -116,10 +139,14 @@ class Floe(ABC):
         live = self.live_cells
         self.present[nodes] = False
         cells = np.flatnonzero(np.isin(self.grid.cell_nodes, nodes).any(axis=1) & self.intact)
-        self.energy.book_departure(nodes, live & ~self.live_cells, self.state, crushed=True)
+        self.depart(nodes, live, crushed=True)
         self.intact[cells] = False
         if len(cells):
             self.engine.remove(cells)
+
+    def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
+        """Books ice that has left with its ``nodes``; ``live`` (cells,) are the cells that were live before."""
+        self.energy.book_departure(nodes, live & ~self.live_cells, self.state, crushed=crushed)
 
     # ---- which cells hold -------------------------------------------------------------------------------------
 
@@ -184,6 +211,6 @@ class Floe(ABC):
         for piece in pieces:
             live = self.live_cells
             self.present[piece] = False
-            self.energy.book_departure(piece, live & ~self.live_cells, self.state)
+            self.depart(piece, live)
             out.pieces.append(piece)
             release(piece)

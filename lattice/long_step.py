@@ -51,6 +51,7 @@ class LongStep:
         mean = 0.5 * (self.contact + force)
         path = end - edge_displacement(old, contact.nodes, self.step.lever)
         self.done.touch.add(self.dt, mean, path / self.dt)
+        self.done.hold -= self.dt * energy.on_held(contact.nodes, mean)
         self.done.rub.add(self.dt, energy.friction_of(end, mean), path / self.dt)
         self.contact, self.served = force, self.served + 1
         return mean
@@ -105,6 +106,6 @@ class LongSteps:
         loss = [energy.loss_rate(s, live, present) for s in states]
         hold = [energy.holding(s.u, s.u_dot, np.zeros_like(s.u), live) for s in states]
         plan.done.damping = dt * (sum(loss) - 0.5 * (loss[0] + loss[-1]))
-        plan.done.hold = dt * (sum(hold) - 0.5 * (hold[0] + hold[-1]))
+        plan.done.hold += dt * (sum(hold) - 0.5 * (hold[0] + hold[-1]))
         energy.book_served(plan.done, state, live, present)
         self.under_way, self._windows = None, min(2, self._longest)

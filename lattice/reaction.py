@@ -78,7 +78,7 @@ class Support:
         dof = (2 * local[:, :, None] + np.arange(2)).reshape(len(local), 8)
         self._springs = SpringTable(dof, engine.springs_u.place, engine.springs_u.value)
         self._reacts = np.flatnonzero(self.held[self._around])
-        self.coefficients = Coefficients(engine.k_f, engine.C_q, engine.M_q, engine.M_u)
+        self.coefficients = Coefficients(engine.k_f, engine.C_q, engine.inertia_q, engine.inertia_u)
 
     def applied(self, loads: Loads) -> Applied:
         """Sums of constant loads."""
@@ -121,17 +121,17 @@ def between(
     b: State,
     dt: float,
     mean: Mean,
-    live: BoolArray,
+    held: float,
     present: BoolArray,
-    applied: Applied,
+    by_name: dict[str, Pair],
 ) -> Reaction:
-    """Means over a time ``dt`` [s] in which ``present`` nodes go from a to b."""
+    """Means over a time ``dt`` [s] in which ``present`` nodes go from a to b.
+
+    ``held`` is the mean force of the supports along x [N], ``by_name`` are the means of the other external forces.
+    """
     rows = Mean(mean.a.in_rows(), mean.b.in_rows(), mean.weight_a, mean.weight_b, mean.slope)
     lift, brake, up, ahead = _sums(rows, a.in_rows(), b.in_rows(), support.coefficients, present)
-    held = support.force(mean, a, b, dt, live)
-    return Reaction(
-        (0.0, -lift), (0.0, -brake / dt), (-ahead / dt, -up / dt), (held - applied.held, 0.0), applied.by_name
-    )
+    return Reaction((0.0, -lift), (0.0, -brake / dt), (-ahead / dt, -up / dt), (held, 0.0), by_name)
 
 
 def of_step(step: Step) -> Mean:

@@ -20,7 +20,7 @@ from lattice.implicit.step import Step
 from lattice.loads import Loads, keep, total
 from lattice.long_step import LongSteps
 from lattice.outcome import TURNED_TOO_FAR, Outcome
-from lattice.reaction import Applied, between, of_cubic, of_step
+from lattice.reaction import between, of_cubic, of_step
 
 LOCATION = 1e-4  #: part of a window to which a failure is located: 2.5 us of 25 ms, far below what the step resolves
 TURNED = 0.1  #: rotation out of plane at which a hanging piece leaves: 1 - cos = 0.5 %, the lattice is linear [rad]
@@ -57,8 +57,8 @@ class Sheet(Floe):
         self._drop_long_step()
         super().retire(nodes)
 
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `Floe.advance`; pieces leave with their state at the start of the window."""
+    def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
+        """As `Floe._advance`; pieces leave with their state at the start of the window."""
         keep(loads, self.present)
         if any(load.acts for load in loads) or self._rotation().max() > TURNED:
             self._drop_long_step()
@@ -98,7 +98,10 @@ class Sheet(Floe):
         live, present = self.live_cells, self.present
         self.energy.book_step(step, loads, contact.nodes, live, present)
         applied = self.support.applied(loads)
-        out.reaction = between(self.support, self.state, step.state, self.dt, of_step(step), live, present, applied)
+        a, b, mean = self.state, step.state, of_step(step)
+        at_once = applied.held + self.energy.on_held(contact.nodes, step.contact_mean)
+        held = self.support.force(mean, a, b, self.dt, live) - at_once
+        out.reaction = between(self.support, a, b, self.dt, mean, held, present, applied.by_name)
         out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
         out.contact_nodes = contact.nodes
         self.state = step.state
@@ -130,7 +133,8 @@ class Sheet(Floe):
         mean = plan.serve(self.energy, old, end, force, contact)
         out = Outcome(mean, contact.nodes, force, parts=self.parts)
         cubic = of_cubic(old, state, self.dt)
-        out.reaction = between(self.support, old, state, self.dt, cubic, live, present, Applied({}))
+        held = self.support.force(cubic, old, state, self.dt, live) - self.energy.on_held(contact.nodes, mean)
+        out.reaction = between(self.support, old, state, self.dt, cubic, held, present, {})
         self.state, self.utilisation = state, utilisation
         if plan.served == plan.windows:
             self.energy.book_step(plan.step, (), contact.nodes, live, present)

@@ -83,11 +83,20 @@ class CellState:
     q: Array  #: (nodes of the grid, 3) w [m], phi_x, phi_y [rad]
     d: float  #: cell size [m]
     limit: Array | None = None  #: (cells,) of the tensile criteria where cells are beside crack tips [Pa]
+    lean: Array | None = None  #: (3, cells) membrane strain that u does not have: xx, yy, shear in engineering measure
 
     @classmethod
-    def of(cls, grid: Grid, u: Array, q: Array, cells: IntArray | None = None, limit: Array | None = None) -> CellState:
+    def of(
+        cls,
+        grid: Grid,
+        u: Array,
+        q: Array,
+        cells: IntArray | None = None,
+        limit: Array | None = None,
+        lean: Array | None = None,
+    ) -> CellState:
         """The given cells or all, from u (nodes, 2) and q = (w, phi_x, phi_y) (nodes, 3)."""
-        return cls(grid.cell_nodes if cells is None else grid.cell_nodes[cells], u, q, grid.d, limit)
+        return cls(grid.cell_nodes if cells is None else grid.cell_nodes[cells], u, q, grid.d, limit, lean)
 
     def limit_or(self, strength: float) -> Array | float:
         """The tensile limit of each cell, or this strength [Pa] where the state is judged without a sheet around."""
@@ -97,12 +106,19 @@ class CellState:
     def strains(self) -> Strains:
         """Averages over parallel connections."""
         found: Strains = mean_strains(self.nodes, self.d, np.ascontiguousarray(self.u), np.ascontiguousarray(self.q))
+        if self.lean is not None:
+            xx, yy, xy = self.lean
+            found = found._replace(e11=found.e11 + xx, e22=found.e22 + yy, e12=found.e12 + 0.5 * xy)
         return found
 
     @cached_property
     def membrane(self) -> Connections:
         """Strain of each connection, without the rotation of the cell [-]."""
-        return Connections.of(self.u[self.nodes], self.d).without_rotation()
+        flat = Connections.of(self.u[self.nodes], self.d).without_rotation()
+        if self.lean is None:
+            return flat
+        xx, yy, xy = self.lean[:, :, None]
+        return Connections(flat.n11 + xx, flat.n22 + yy, flat.s12 + 0.5 * xy, flat.s21 + 0.5 * xy)
 
     @cached_property
     def bending(self) -> Connections:
@@ -114,7 +130,11 @@ class CellState:
         """Strain of the two diagonals, (A.2.17), (A.2.18), (cells, 2) [-]."""
         U = self.u[self.nodes]
         d1, d2 = U[:, 3] - U[:, 0], U[:, 1] - U[:, 2]
-        return np.column_stack((d1[:, 0] + d1[:, 1], d2[:, 0] - d2[:, 1])) / (2.0 * self.d)
+        flat = np.column_stack((d1[:, 0] + d1[:, 1], d2[:, 0] - d2[:, 1])) / (2.0 * self.d)
+        if self.lean is None:
+            return flat
+        xx, yy, xy = self.lean
+        return flat + 0.5 * np.column_stack((xx + yy + xy, xx + yy - xy))
 
     @cached_property
     def shear(self) -> Array:

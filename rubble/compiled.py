@@ -13,6 +13,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -35,38 +36,61 @@ def sources_key(package: Path) -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_folder(package: Path) -> Path:
-    """Where the kernels of a package in its present state are kept: beside it, or below NUMBA_CACHE_DIR if set."""
-    home = package / "__pycache__"
+def cache_folder(package: Path) -> Path | None:
+    """Where the kernels of a package in its present state are kept; None if no place can be written.
+
+    Below NUMBA_CACHE_DIR if that is set; else beside the package, or, where it is read-only, in the user's cache.
+    """
     if config.CACHE_DIR:
-        home = Path(config.CACHE_DIR) / package.name
-    elif not os.access(package, os.W_OK):
-        home = Path.home() / ".cache" / "brash" / package.name
-    folder = home / f"kernels-{sources_key(package)}"
-    if not folder.is_dir():
-        others = sorted(home.glob("kernels-*"), key=lambda f: f.stat().st_mtime)
-        for old in others[: max(0, len(others) - KEPT)]:
-            shutil.rmtree(old, ignore_errors=True)
-        folder.mkdir(parents=True, exist_ok=True)
-    return folder
+        homes = [Path(config.CACHE_DIR) / package.name]
+    else:
+        user = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+        homes = [package / "__pycache__", user / "brash" / package.name]
+    key = f"kernels-{sources_key(package)}"
+    return next((home / key for home in homes if _prepared(home, key)), None)
+
+
+def _prepared(home: Path, key: str) -> bool:
+    """Whether kernels can be kept in the folder ``key`` of ``home``; makes it, and removes the oldest of the others."""
+    folder = home / key
+    try:
+        if not folder.is_dir():
+            others = sorted(home.glob("kernels-*"), key=lambda f: f.stat().st_mtime)
+            for old in others[: max(0, len(others) - KEPT)]:
+                shutil.rmtree(old, ignore_errors=True)
+            folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
+
+
+def _say_that_nothing_is_kept() -> None:
+    """One note for all packages: that it was given is booked where numba is."""
+    if vars(numba).setdefault("_brash_has_said", False):
+        return
+    vars(numba)["_brash_has_said"] = True
+    text = "compiled kernels are not kept, every run compiles anew: set NUMBA_CACHE_DIR to a folder that can be written"
+    warnings.warn_explicit(text, RuntimeWarning, "brash", 0)
 
 
 _FOLDER = cache_folder(PACKAGE)
+if _FOLDER is None:
+    _say_that_nothing_is_kept()
 
 
 def compiled(*signature: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there."""
-    return lambda kernel: _kept(_njit(*signature, cache=True, **options), kernel)
+    return lambda kernel: _kept(_njit(*signature, cache=_FOLDER is not None, **options), kernel)
 
 
 def callback(signature: str) -> Callable[[Callable[..., Any]], Any]:
     """`numba.cfunc`, for libraries that call back, kept likewise."""
-    return lambda kernel: _kept(cfunc(signature, cache=True), kernel)
+    return lambda kernel: _kept(cfunc(signature, cache=_FOLDER is not None), kernel)
 
 
 def _kept(compile_it: Callable[..., Any], kernel: Callable[..., Any]) -> Any:
     before = config.CACHE_DIR
-    config.CACHE_DIR = str(_FOLDER)
+    config.CACHE_DIR = before if _FOLDER is None else str(_FOLDER)
     try:
         return compile_it(kernel)
     finally:

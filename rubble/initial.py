@@ -110,7 +110,7 @@ def _fill(
             layer.physics.rho_i,
             angle,
         )
-        layer.add_block(key, slab, fragment=-1, flooded=True)
+        layer.add_block(key, slab, fragment=-1, flooded=1.0)
 
 
 def _calm(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]]) -> float:

@@ -96,14 +96,14 @@ class RubbleLayer:
         *,
         y: float | None = None,
         fragment: int = 0,
-        flooded: bool | None = None,
+        flooded: float | None = None,
         alone: bool = True,
     ) -> int:
         """Make a plate of one piece from ice in a section; returns its number.
 
         ``velocity`` (x, z) or (x, y, z) [m/s], ``omega`` [rad/s]; ``y`` is the middle of the section if not given [m].
-        ``flooded`` says whether its top is under water already, by default as `RubblePhysics.backfill` has it for a
-        new piece. ValueError if it stands in the structure or, unless ``alone`` is False, in another plate.
+        ``flooded`` is the part of the head of water that its top carries, by default as `RubblePhysics.backfill` has it
+        for a new piece. ValueError if it stands in the structure or, unless ``alone`` is False, in another plate.
         """
         at = self.centre(section) if y is None else y
         prisms, start = one_piece(slab, at, velocity, omega)
@@ -113,7 +113,7 @@ class RubbleLayer:
         return plate.id
 
     def add_plate(
-        self, prisms: Sequence[tuple[Prism, Array]], start: Start, *, fragment: int = 0, flooded: bool | None = None
+        self, prisms: Sequence[tuple[Prism, Array]], start: Start, *, fragment: int = 0, flooded: float | None = None
     ) -> int:
         """Make a plate of prisms at places (3,) in its axes; returns its number."""
         plate = self._make(fragment, prisms, start, flooded)
@@ -124,9 +124,9 @@ class RubbleLayer:
         """The plate that `add_plate` would make, without adding it."""
         return self._make(-1, prisms, start, None)
 
-    def _make(self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: bool | None) -> Plate:
-        full = self.physics.backfill == "full" if flooded is None else flooded
-        return self.store.make(fragment, prisms, start, float(full))
+    def _make(self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: float | None) -> Plate:
+        full = float(self.physics.backfill == "full") if flooded is None else float(flooded)
+        return self.store.make(fragment, prisms, start, full)
 
     def _check_room(self, plate: Plate, section: Section, *, alone: bool) -> None:
         outline, y = plate.outline, float(plate.position[1])

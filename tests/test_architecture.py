@@ -19,7 +19,8 @@ ALLOWED = {
 PORTS = {"coupling/sheet_port/": {"lattice"}, "coupling/rubble_port/": {"rubble"}}
 #: library -> the only files that may import it
 LIBRARIES = {
-    "mcap": {"cosim/recording/writer.py", "cosim/recording/reader.py", "cosim/recording/recover.py"},
+    "mcap": {f"cosim/recording/{name}.py" for name in ("writer", "reader", "records", "recover")},
+    "zstandard": {"cosim/recording/records.py"},
     "mcap_protobuf": {"cosim/recording/writer.py"},
     "rerun": {"cosim/show/replay.py", "cosim/show/layout.py", "cosim/show/viewer.py"},
     "rerun_cli": {"cosim/show/viewer.py"},

@@ -117,7 +117,7 @@ def test_every_key_of_a_scenario_stands_in_the_reference_with_its_meaning() -> N
     text = HOOKS.reference(ScenarioModel)
     for name, section in HOOKS.sections(ScenarioModel):
         table = text.split(f"## [{name}]\n")[1].split("\n## ")[0]
-        keys = [k for k, f in section.model_fields.items() if HOOKS._model_of(f.annotation) is None]
+        keys = [k for k, f in section.model_fields.items() if HOOKS.model_of(f.annotation) is None]
         rows = re.findall(r"^\| `(\w+)` \|.*\| (.+) \|$", table, re.M)
         assert [key for key, _ in rows] == keys
         assert all(meaning.strip() for _, meaning in rows)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import shutil
 import subprocess
 import sys
@@ -123,3 +124,38 @@ def test_old_folders_go(tmp_path, monkeypatch):
     assert sum(folder.is_dir() for folder in seen) == compiled.KEPT + 1
     assert seen[-1].is_dir()
     assert compiled.cache_folder(package) == seen[-1]
+
+
+def test_a_package_that_cannot_be_written_keeps_its_kernels_with_the_user(tmp_path, monkeypatch):
+    from lattice import compiled
+
+    monkeypatch.setattr(compiled.config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    package = tmp_path / "thing"
+    package.mkdir()
+    assert compiled.cache_folder(package).parent == package / "__pycache__"
+    shutil.rmtree(package / "__pycache__")
+    (package / "__pycache__").touch()  # root may write to every folder, but not into a file
+    assert compiled.cache_folder(package).parent == tmp_path / "cache" / "brash" / "thing"
+    shutil.rmtree(tmp_path / "cache")
+    (tmp_path / "cache").touch()
+    assert compiled.cache_folder(package) is None
+
+
+def test_where_nothing_can_be_written_all_works_with_one_note(tmp_path):
+    for name in ("one", "two"):
+        write(tmp_path / name, 2.0, keyed=True)
+        (tmp_path / name / "__pycache__").touch()
+    (tmp_path / "cache").touch()
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    done = subprocess.run(
+        [sys.executable, "-c", "import one.outer, two.outer; print(one.outer.total(10.0) + two.outer.total(1.0))"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**environment, "XDG_CACHE_HOME": str(tmp_path / "cache")},
+    )
+    assert float(done.stdout) == 22.0
+    assert done.stderr.count("\n") == 1
+    assert "compiled kernels are not kept, every run compiles anew: set NUMBA_CACHE_DIR" in done.stderr

@@ -14,17 +14,19 @@ from coupling.interface import Array
 
 
 def rows(run: RunData) -> list[dict[str, Any]]:
-    """The terms [MN] of Fx and Fz: at both peaks, before circumferential failures, on the mean; empty without a budget.
+    """The terms [N] of Fx and Fz: at both peaks, before circumferential failures, on the mean; empty without a budget.
 
-    "Before" is the last window before the first failure of each encounter.
+    Those at an instant are means over the averaging time of the run. "Before" is the last window before the first
+    failure of each encounter.
     """
     if not run.budget or not len(run.t_ns):
         return []
+    windows, run = run, run.lasting
     at_fz, at_fx = (at_peak(run, name) or 0 for name in ("fz", "fx"))
     instants = [("peak of Fz", at_fz), ("peak of Fx", at_fx)] if at_fz != at_fx else [("peak of Fz and Fx", at_fz)]
     instants += [("before failure", e.event - 1) for e in encounters(run) if e.event > 0]
     table = [_row(run, when, f"{run.t[k]:.2f}", axis, slice(k, k + 1)) for when, k in instants for axis in ("fz", "fx")]
-    return table + [_row(run, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
+    return table + [_row(windows, "mean", "all", axis, slice(None)) for axis in ("fz", "fx")]
 
 
 def carriers(run: RunData) -> tuple[str, ...]:
@@ -37,7 +39,7 @@ def _row(run: RunData, when: str, time: str, axis: str, windows: slice) -> dict[
     length = (run.t_ns - run.begin_ns)[windows]
 
     def mean(values: Array) -> float:
-        return float(np.average(values[windows], weights=length)) / 1e6
+        return float(np.average(values[windows], weights=length))
 
     terms = {name.replace("_", " "): mean(run.budget[f"{axis}_{name}"]) for name in (*carriers(run), "residual")}
     return {

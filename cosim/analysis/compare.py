@@ -24,6 +24,7 @@ class Row:
 
     feature: Feature
     simulated: float | None
+    over: float  #: time over which its loads are means [s]; 0 for single windows and instants
 
 
 def ratio(simulated: float | None, value: Range | None) -> float | None:
@@ -38,9 +39,10 @@ def compare(run: RunData, reference: Reference) -> list[Row]:
     """Every feature of the reference, taken from the run."""
 
     def value(f: Feature) -> float | None:
-        return QUANTITIES[f.quantity](run if f.over is None else run.averaged(f.over), **f.arguments)
+        loads = run.lasting if f.over is None else run.averaged(f.over)
+        return QUANTITIES[f.quantity](loads, **f.arguments)
 
-    return [Row(f, value(f)) for f in reference.features]
+    return [Row(f, value(f), run.averaging if f.over is None else f.over) for f in reference.features]
 
 
 def reference_of(run: RunData, path: str | Path | None) -> tuple[str, Reference]:
@@ -53,7 +55,7 @@ def reference_of(run: RunData, path: str | Path | None) -> tuple[str, Reference]
     return "reference.toml", parse_reference(text, f"{run.name}/reference.toml")
 
 
-def to_json(run: RunData, name: str, rows: list[Row]) -> dict[str, Any]:
+def to_json(run: RunData, name: str | None, rows: list[Row]) -> dict[str, Any]:
     """``measured`` is a number; a range gives its middle, and ``measured_range`` both ends.
 
     ``peaks`` holds the load and the share of each phase at the peak of Fx, Fz and the resultant.
@@ -61,6 +63,8 @@ def to_json(run: RunData, name: str, rows: list[Row]) -> dict[str, Any]:
     return {
         "run": run.name,
         "reference": name,
+        "remark": run.remark or None,
+        "averaging_s": run.averaging,
         "features": [_json_row(row) for row in rows],
         "series": None,
         "peaks": shares_at_peak(run),
@@ -81,7 +85,7 @@ def _json_row(row: Row) -> dict[str, Any]:
         "thesis_ratio": ratio(row.simulated, f.thesis),
         "quantity": f.quantity,
         "arguments": f.arguments,
-        "over": f.over,
+        "over": row.over,
     }
 
 

@@ -7,8 +7,6 @@ fed into the rubble and cleared from it.
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
-from scipy.signal import find_peaks
 
 from cosim.analysis.instants import Kinds, between, encounters, evenly, events_of, first_contact, largest
 from cosim.analysis.run_data import RunData
@@ -80,6 +78,9 @@ def cycle_period(
     A peak stands out by ``prominence`` of the record's largest load, after a running mean over ``smooth`` [s]. None
     with fewer than three peaks.
     """
+    from scipy.ndimage import uniform_filter1d  # these take a second to load, and most commands do not need them
+    from scipy.signal import find_peaks
+
     begin, end = between(run, after, before)
     if begin is None:
         return None

@@ -109,26 +109,17 @@ def rubble_volume(run: RunData) -> float | None:
     return float(np.nanmax(mass)) / float(run.metadata["ice_density"])
 
 
-#: the functions that a reference file may name
-QUANTITIES: dict[str, Callable[..., float | None]] = {
-    f.__name__: f
-    for f in (
-        event_load,
-        event_time,
-        peak_load,
-        peak_time,
-        build_up_time,
-        level_between_peaks,
-        load_period,
-        rubble_volume,
-        cycles.largest_load,
-        cycles.encounter_load,
-        cycles.encounter_time,
-        cycles.mean_load,
-        cycles.cycle_period,
-        cycles.piece_length,
-        cycles.piece_area,
-        cycles.feed_rate,
-        cycles.clearing_rate,
-    )
+#: the functions that a reference file may name, and the unit of what they give
+UNITS: dict[str, str] = {}
+QUANTITIES: dict[str, Callable[..., float | None]] = {}
+_OF_UNIT: dict[str, tuple[Callable[..., float | None], ...]] = {
+    "N": (event_load, peak_load, level_between_peaks, cycles.largest_load, cycles.encounter_load, cycles.mean_load),
+    "s": (event_time, peak_time, build_up_time, load_period, cycles.encounter_time, cycles.cycle_period),
+    "m": (cycles.piece_length,),
+    "m^2": (cycles.piece_area,),
+    "m^3": (rubble_volume,),
+    "kg/s": (cycles.feed_rate, cycles.clearing_rate),
 }
+for _unit, _functions in _OF_UNIT.items():
+    for _function in _functions:
+        QUANTITIES[_function.__name__], UNITS[_function.__name__] = _function, _unit

@@ -1,4 +1,4 @@
-"""Largest loads of a recorded run, by component and phase, and the summary of a run."""
+"""Largest loads of a recorded run, by component and phase."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from cosim.analysis.instants import largest
 from cosim.analysis.run_data import RunData
-from coupling.interface import NS, PHASES
+from coupling.interface import PHASES
 
 
 def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> int | None:
@@ -18,8 +18,11 @@ def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> in
 
 
 def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float | None]]:
-    """Fx, Fz and resultant, largest in magnitude, with their simulated times, of all phases or of one."""
-    out: dict[str, dict[str, float | None]] = {}
+    """Fx, Fz and resultant, largest in magnitude, with their simulated times, of all phases or of one.
+
+    As everywhere, a peak is the largest mean over the averaging time of the run: `cosim.analysis.sustained`.
+    """
+    run, out = run.lasting, dict[str, dict[str, float | None]]()
     for name in ("fx", "fz", "f"):
         values, k = run.component(name, phase), at_peak(run, name, phase)
         out[name] = {"value": None, "time": None} if k is None else {"value": float(values[k]), "time": float(run.t[k])}
@@ -29,9 +32,10 @@ def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float |
 def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
     """For Fx, Fz and the resultant: peak (by magnitude) [N], its time [s], load [N] and share of each phase then.
 
-    The phases of the resultant are projected on its direction, so that they add up to it as the others do.
+    The peak is as in `peaks`. The phases of the resultant are projected on its direction, so that they add up to it as
+    the others do.
     """
-    out: dict[str, dict[str, Any]] = {}
+    run, out = run.lasting, dict[str, dict[str, Any]]()
     for name in ("fx", "fz", "f") if len(run.t_ns) else ():
         total = run.component(name)
         k = at_peak(run, name) or 0
@@ -45,34 +49,3 @@ def shares_at_peak(run: RunData) -> dict[str, dict[str, Any]]:
             "shares": {p: v / peak if peak else 0.0 for p, v in loads.items()},
         }
     return out
-
-
-def summary(run: RunData) -> dict[str, Any]:
-    """What a recording holds, as `cosim info --json` prints it."""
-    return {
-        "run": run.name,
-        "scenario": run.metadata["scenario"],
-        "title": run.metadata["title"],
-        "version": run.metadata["version"],
-        "seed": int(run.metadata["seed"]),
-        "overrides": run.overrides,
-        "simulated_s": float(run.t[-1]) if len(run.t) else 0.0,
-        "duration_s": int(run.metadata["duration_ns"]) / NS,
-        "windows": len(run.t),
-        "peaks": peaks(run),
-        "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
-        "events": [
-            {
-                "time": e.t_ns / NS,
-                "kind": e.kind,
-                "fx": e.force[0],
-                "fz": e.force[2],
-                "cells": e.cells,
-                "length": e.length,
-                "area": e.area,
-                "cause": e.cause,
-            }
-            for e in run.events
-        ],
-        "ledger": {name: float(values[-1]) for name, values in run.ledger.items()},
-    }

@@ -5,10 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
-from cosim.analysis.sustained import running_mean
+from cosim.analysis.sustained import at_event, running_mean
 from coupling.interface import NS, PHASES, Array, Event, IntArray
 
 #: components of a load in recordings, and with the resultant ``f``
@@ -21,13 +22,25 @@ class RunData:
     """Loads of every window, events and ledger of a run."""
 
     name: str  #: of the file
-    metadata: Mapping[str, str]  #: of the run, see `cosim.recording.writer.run_metadata`
+    metadata: Mapping[str, str]  #: of the run, see `cosim.recording.metadata.run_metadata`
     t_ns: IntArray  #: (n,) end of each window [ns]
     load: Array  #: (n, 3, 3) force on the structure: windows, phases, components [N]
     events: tuple[Event, ...] = ()
     ledger: dict[str, Array] = field(default_factory=dict)  #: (n,) by name; nan where a window has no such term
     texts: Mapping[str, str] = field(default_factory=dict)  #: attachments by name: scenario.toml, reference.toml
     budget: dict[str, Array] = field(default_factory=dict)  #: (n,) by term, see `coupling.budget` [N]; empty if unknown
+    ended: str = "complete"  #: how the run ended, in words if it did not reach its duration
+    cut: bool = False  #: the file ends before its end
+
+    @property
+    def remark(self) -> str:
+        """What a reader must know of a run that is not whole; empty for one that is."""
+        if self.ended == "complete" and not self.cut:
+            return ""
+        held = f"it holds {self.t_ns[-1] / NS:g} of {int(self.metadata['duration_ns']) / NS:g} s"
+        if self.cut:
+            return f"{self.name} is truncated (its run goes on, was killed, or the copy is not whole): {held}"
+        return f"{self.name} is of a run that did not reach its end: {self.ended}; {held}"
 
     @property
     def t(self) -> Array:
@@ -49,9 +62,31 @@ class RunData:
         out: Array = load[:, AXES.index(name)]
         return out
 
+    @property
+    def averaging(self) -> float:
+        """Peaks of this run are those of the mean over this time [s]; see `cosim.analysis.sustained`."""
+        return float(self.metadata["averaging_s"])
+
     def averaged(self, seconds: float) -> RunData:
-        """The run with loads that are means over the last ``seconds``; see `cosim.analysis.sustained`."""
-        return replace(self, load=running_mean(self.begin_ns, self.t_ns, self.load, seconds))
+        """The run with loads, budget and loads of events that are means over the last ``seconds``; 0: as they are."""
+        if seconds <= 0.0 or not len(self.t_ns):
+            return self
+        load = running_mean(self.begin_ns, self.t_ns, self.load, seconds)
+        total = load.sum(axis=1)
+        return replace(
+            self,
+            load=load,
+            events=tuple(replace(e, force=tuple(at_event(self.t_ns, total, e.t_ns).tolist())) for e in self.events),
+            budget={
+                name: running_mean(self.begin_ns, self.t_ns, np.nan_to_num(term), seconds)
+                for name, term in self.budget.items()
+            },
+        )
+
+    @cached_property
+    def lasting(self) -> RunData:
+        """The run with the loads of which its peaks are the largest."""
+        return self.averaged(self.averaging)
 
     @property
     def overrides(self) -> list[str]:

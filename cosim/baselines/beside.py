@@ -24,8 +24,10 @@ def beside(run: RunData) -> dict[str, Any]:
         model = ScenarioModel.model_validate(tomllib.loads(run.texts.get("scenario.toml", "")))
     except (tomllib.TOMLDecodeError, ValidationError) as error:
         what = str(error).splitlines()[0]
-        return {"simulated": simulated, "refused": f"the recorded scenario cannot be read by this version: {what}"}
+        refused = f"the recorded scenario cannot be read by this version: {what}"
+        return {"averaging_s": run.averaging, "simulated": simulated, "refused": refused}
     return {
+        "averaging_s": run.averaging,
         "simulated": simulated,
         "methods": {name: _row(simulated, found) for name, found in design_loads(model).items()},
     }
@@ -33,6 +35,7 @@ def beside(run: RunData) -> dict[str, Any]:
 
 def simulated_load(run: RunData) -> dict[str, float | None]:
     """Largest Fx and Fz in magnitude, and the share of breaking at the peak of Fx."""
+    run = run.lasting
     k = at_peak(run, "fx")
     if k is None:
         return {"fx": None, "fz": None, "breaking_share": None}

@@ -1,4 +1,4 @@
-"""The command line: ``cosim run | sweep | replay | compare | report | baseline | verify | info | recover | list``."""
+"""The command line: ``cosim new | keys | check | run | sweep | replay | compare | report | ...``; `entry` has all."""
 
 from cosim.cli.entry import main
 

@@ -9,21 +9,25 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
-from cosim.cli import recordings, scenarios, simulate
+from cosim.cli import authoring, recordings, scenarios, simulate
 from cosim.errors import explain
+from cosim.plain import one_line
+from cosim.signals import StoppedError, handled
 
 app = typer.Typer(
     name="cosim",
-    add_completion=False,
     pretty_exceptions_enable=False,
-    help="Ice loads on sloping structures: a lattice that breaks, coupled with rubble that slides.",
 )
 #: in the order of the help
 COMMANDS: dict[str, Callable[..., None]] = {
+    "new": authoring.new,
+    "scale": authoring.scale,
+    "keys": authoring.keys,
+    "check": authoring.check,
     "run": simulate.run,
     "sweep": simulate.sweep_variants,
     "replay": recordings.replay,
@@ -39,18 +43,53 @@ for _name, _command in COMMANDS.items():
     app.command(_name)(_command)
 
 
+def _print_version(asked: bool) -> None:
+    if asked:
+        from cosim.provenance import commit, version
+
+        sys.stdout.write(f"cosim {version()} ({commit()})\n")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="print version and commit")
+    ] = False,
+) -> None:
+    """Ice loads on sloping structures: a lattice that breaks, coupled with rubble that slides."""
+
+
 def main(arguments: list[str] | None = None) -> NoReturn:
     """Entry point: what goes wrong becomes one line and an exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        code = app(args=arguments or ["--help"], prog_name="cosim", standalone_mode=False)
-    except KeyboardInterrupt:
-        text, code = "stopped by the user; a recording holds what was simulated until now", 130
+        with handled():
+            code = app(args=arguments or ["--help"], prog_name="cosim", standalone_mode=False)
+            sys.stdout.flush()
+    except StoppedError as error:
+        text, code = (
+            f"{error}; {error.kept} holds what was simulated until then" if error.kept else str(error),
+            error.code,
+        )
+    except SystemExit as error:  # the argument parser's own end when its reader has gone
+        if error.code != 1 or "_COSIM_COMPLETE" in os.environ:
+            raise
+        text, code = "standard output: closed by its reader", 1
     except Exception as error:
         if os.environ.get("COSIM_TRACEBACK"):
             raise
         text, code = explain(error)
     else:
         raise SystemExit(code if isinstance(code, int) else 0)
-    sys.stderr.write(f"cosim: {' '.join(text.split())}\n")
+    _let_go_of_output()
+    sys.stderr.write(f"cosim: {one_line(text)}\n")
     raise SystemExit(code)
+
+
+def _let_go_of_output() -> None:
+    """What is buffered for an output that takes no more is dropped, else Python complains about it at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

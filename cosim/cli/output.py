@@ -1,23 +1,11 @@
-"""What a command hands out: a place that can be written, and JSON that every reader takes."""
+"""What a command hands out to machines: JSON that every reader takes."""
 
 from __future__ import annotations
 
 import json
 import math
 import sys
-from pathlib import Path
 from typing import Any
-
-from cosim.errors import InputError
-
-
-def writable(path: Path) -> Path:
-    """Refuse a place that cannot be written before hours are simulated."""
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; name a file in it")
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: no such folder {path.parent}; create it or write elsewhere")
-    return path
 
 
 def print_json(content: dict[str, Any] | list[dict[str, Any]]) -> None:

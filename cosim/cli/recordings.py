@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from cosim.cli.options import JsonOption, RunArgument
-from cosim.cli.output import print_json, writable
+from cosim.cli.options import ForceOption, JsonOption, RunArgument, SeriesSetOption
+from cosim.cli.output import print_json
 from cosim.errors import InputError
+from cosim.outputs import whole, writable
 
 
 def replay(
@@ -24,15 +26,17 @@ def replay(
         raise InputError("--save, --web and --screenshot exclude each other; give one of them")
     if time is not None and screenshot is None:
         raise InputError("--time belongs to --screenshot; add --screenshot x.png")
-    for path in (save, screenshot):
+    for path, kind in ((save, ".rrd"), (screenshot, ".png")):
         if path is not None:
-            writable(path)
+            writable(path, kind, [recording])
+    os.environ.setdefault("RUST_LOG", "off")  # rerun's own log; what goes wrong it says to us as well
     from cosim.show import replay as show
 
     if save is not None:
         show.save(recording, save)
     elif screenshot is not None:
-        show.screenshot(recording, screenshot, time)
+        with whole(screenshot, ".png") as part:
+            show.screenshot(recording, part, time)
     elif web:
         show.serve(recording)
     else:
@@ -40,47 +44,63 @@ def replay(
 
 
 def compare(
-    recording: RunArgument,
-    reference: Annotated[Path | None, typer.Argument(help="reference.toml or its folder; default: of the run")] = None,
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN... [REFERENCE] [SERIES]",
+            help="recordings; reference.toml or its folder, default: of the run; a measured series (.csv, .parquet, "
+            "series.toml) or as the last of several recordings another run",
+        ),
+    ],
+    settings: SeriesSetOption = None,
+    pictures: Annotated[Path | None, typer.Option(help="folder for pictures of run and series (.png)")] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Put the features of a recording beside what was measured and what others computed."""
-    from cosim.analysis import compare as comparison
-    from cosim.baselines.beside import beside
-    from cosim.recording.reader import read_run
-    from cosim.show.baseline_tables import print_beside
-    from cosim.show.tables import print_compare
+    """Put the features of recordings beside what was measured and what others computed, and beside a series."""
+    from cosim.cli.comparing import compared
+    from cosim.series.beside import sort_files
+    from cosim.series.compare import files as beside_series
+    from cosim.show.opening import opened
+    from cosim.show.series_tables import write_pictures
 
-    data = read_run(recording)
-    name, loaded = comparison.reference_of(data, reference)
-    rows, design = comparison.compare(data, loaded), beside(data)
+    asked = sort_files(files)
+    if asked.series is None and (settings or pictures):
+        raise InputError("--set and --pictures belong to a series; name its file, for example measured.csv")
+    runs = [opened(run) for run in asked.runs]
+    pairs = [None] * len(runs) if asked.series is None else beside_series(asked.series, runs, settings or ())
+    objects = [compared(run, asked.reference, pair, as_json) for run, pair in zip(runs, pairs, strict=True)]
+    for pair in pairs:
+        if pair is not None and pictures is not None:
+            write_pictures(pair, pictures)
     if as_json:
-        print_json({**comparison.to_json(data, name, rows), "design": design})
-    else:
-        print_compare(loaded.title, rows)
-        print_beside(design)
+        print_json(objects[0] if len(objects) == 1 else objects)
 
 
-def info(recording: RunArgument, as_json: JsonOption = False) -> None:
+def info(
+    recording: RunArgument,
+    events: Annotated[bool, typer.Option("--events", help="list all events")] = False,
+    as_json: JsonOption = False,
+) -> None:
     """What a recording holds: scenario, version, time, peaks, events."""
-    from cosim.analysis.peaks import summary
-    from cosim.recording.reader import read_run
+    from cosim.analysis.summary import summary
+    from cosim.show.opening import opened
     from cosim.show.tables import print_info
 
-    content = summary(read_run(recording))
-    print_json(content) if as_json else print_info(content)
+    content = summary(opened(recording))
+    print_json(content) if as_json else print_info(content, events)
 
 
 def recover(
     recording: RunArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="the clean recording")] = None,
+    force: ForceOption = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Write what can be read of a truncated recording as a clean file."""
+    """Write what can be read of a truncated or damaged recording as a clean file."""
     from cosim.recording.recover import recover as rescue
     from cosim.show.console import print_line
 
-    output = writable(output or recording.with_suffix(".recovered.mcap"))
+    output = writable(output or recording.with_suffix(".recovered.mcap"), ".mcap", [recording], force)
     data = rescue(recording, output)
     content = {
         "run": recording.name,
@@ -97,11 +117,19 @@ def recover(
 def report(
     recording: RunArgument,
     output: Annotated[Path, typer.Option("-o", "--output", help="the page (.html)")],
+    series: Annotated[Path | None, typer.Option(help="a measured series, as of `cosim compare`")] = None,
+    settings: SeriesSetOption = None,
 ) -> None:
-    """One HTML page of a recording: loads by phase, balances, events, numbers beside the reference."""
-    from cosim.recording.reader import read_run
+    """One HTML page of a recording: loads by phase, balances, events, numbers beside reference and series."""
+    from cosim.series.compare import files
     from cosim.show.console import print_line
+    from cosim.show.opening import opened
     from cosim.show.report import write_report
 
-    write_report(read_run(recording), writable(output))
+    inputs = [recording] if series is None else [recording, series]
+    writable(output, ".html", inputs)
+    run = opened(recording)
+    measured = None if series is None else files(series, [run], settings or ())[0]
+    with whole(output, ".html") as part:
+        write_report(run, part, measured)
     print_line(f"{output}: written")

@@ -18,19 +18,9 @@ def baseline(scenario: ScenarioArgument, overrides: SetOption = None, as_json: J
 
 
 def list_scenarios(as_json: JsonOption = False) -> None:
-    """The scenarios that are found here and in the project."""
-    from cosim.scenario.finding import find_scenarios
-    from cosim.scenario.loading import load_scenario
-    from cosim.show.tables import print_scenarios
+    """The scenarios that are found here and in the project; of two of one name the one here."""
+    from cosim.scenario.listing import in_seconds, listing
+    from cosim.show.scenario_table import print_scenarios
 
-    found = [load_scenario(folder) for folder in find_scenarios()]
-    rows = [
-        {
-            "name": s.name,
-            "title": s.title,
-            "description": s.model.scenario.description,
-            "duration_s": s.duration_ns / 1e9,
-        }
-        for s in found
-    ]
-    print_json({"scenarios": rows}) if as_json else print_scenarios(rows)
+    rows = listing()
+    print_json({"scenarios": [in_seconds(row) for row in rows]}) if as_json else print_scenarios(rows)

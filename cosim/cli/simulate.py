@@ -2,78 +2,116 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cosim.cli.options import JsonOption, ScenarioArgument, SetOption
-from cosim.cli.output import print_json, writable
+from cosim.cli.grouping import grouped
+from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption, talking
+from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
-from cosim.verify.case import CaseResult
+from cosim.outputs import whole, writable
+from cosim.show.talk import Talk
+
+if TYPE_CHECKING:
+    from cosim.scenario.scenario import Scenario
+    from cosim.verify.case import CaseResult
 
 
+@talking
 def run(
     scenario: ScenarioArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
     overrides: SetOption = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="check and build, simulate nothing")] = False,
+    force: ForceOption = False,
     as_json: JsonOption = False,
+    *,
+    talk: Talk,
 ) -> None:
     """Simulate a scenario."""
     from cosim.observer import Observer
     from cosim.recording.writer import Recorder
     from cosim.scenario.loading import load_scenario
-    from cosim.show.console import warn
+    from cosim.show.check import fact_lines, judged
     from cosim.show.progress import ProgressBar
-    from cosim.show.tables import print_run
+    from cosim.show.tables import print_run, result_lines
+    from cosim.watched import simulate
 
     loaded = load_scenario(scenario, overrides or ())
+    about = judged(loaded)
+    for text in about["faults"]:
+        raise InputError(text)
     for text in loaded.warnings:
-        warn(text)
-    observers: list[Observer] = [ProgressBar()]
+        talk.warn(text)
+    for line in (*fact_lines(about["facts"]), about["cost_text"]):
+        talk.detail(line)
+    observers: list[Observer] = [ProgressBar(talk)]
     if output is not None:
-        observers.append(Recorder(writable(output)))
-    result = _simulate(loaded, observers)
+        writable(output, ".mcap", force=force)
+    if dry_run:
+        _dry_run(loaded, about, as_json)
+        return
+    if output is not None:
+        observers.append(Recorder(output, force=force))
+    result = simulate(loaded, observers)
     result["recording"] = None if output is None else str(output)
-    print_json(result) if as_json else print_run(result)
+    for line in result_lines(result):
+        talk.keep(line)
+    print_json(result) if as_json else print_run(result, talk.level)
 
 
-def _simulate(scenario: Any, observers: list[Any]) -> dict[str, Any]:
-    """Run and close the observers whatever happens."""
-    from cosim.run import run_scenario
+def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
+    """Build all participants, tell what would run, and simulate nothing."""
+    from cosim.build import build
+    from cosim.show.check import print_check
 
-    try:
-        result: dict[str, Any] = run_scenario(scenario, observers).to_json()
-        return result
-    finally:
-        for observer in observers:
-            observer.on_close()
+    build(scenario)
+    print_json(about) if as_json else print_check(about)
 
 
+@dataclass(frozen=True)
+class SweepFiles:
+    """What a sweep writes."""
+
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None
+    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None
+
+    def check(self) -> None:
+        """Before anything is simulated."""
+        for path, kind in ((self.output, ".csv"), (self.plot, ".png")):
+            if path is not None:
+                writable(path, kind)
+
+
+@talking
+@grouped
 def sweep_variants(
     scenario: ScenarioArgument,
     vary: Annotated[list[str], typer.Option("--vary", metavar="A.B=V,V", help="a key and its values, repeatable")],
+    files: SweepFiles,
     overrides: SetOption = None,
     grid: Annotated[bool, typer.Option("--grid/--one-at-a-time", help="all combinations, or each value alone")] = False,
     workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None,
-    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None,
     as_json: JsonOption = False,
+    *,
+    talk: Talk,
 ) -> None:
     """Run variants of a scenario and put their loads side by side."""
-    from cosim.study import command as command
+    from cosim.study import command
+    from cosim.study.table import Table
 
-    for path in (output, plot):
-        if path is not None:
-            writable(path)
-    content = command.run_sweep(scenario, vary, overrides or (), grid, workers)
-    if output is not None:
-        command.write_csv(content, output)
-    print_json(content) if as_json else command.show(content)
-    if plot is not None:
+    files.check()
+    with Table(files.output) as table:
+        content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table, talk)
+        print_json(content) if as_json else command.show(content)
+    if files.plot is not None:
         from cosim.show.tornado import tornado
 
-        tornado(content, plot)
+        with whole(files.plot, ".png") as part:
+            tornado(content, part)
     if content["failed"]:
         raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")
 

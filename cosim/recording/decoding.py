@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -9,24 +10,28 @@ import numpy as np
 
 from cosim.analysis.run_data import RunData
 from cosim.recording import messages
-from coupling.interface import Array, Event, IntArray
+from coupling.interface import NS, Array, Event, IntArray
 
 DATA_TOPICS = ("/load/structure", "/events", "/ledger", "/load/budget")
 Stored = tuple[str, int, bytes]  #: topic, time [ns], serialised message
 
 
 def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], stored: Iterable[Stored]) -> RunData:
-    """From serialised messages; other topics are passed over."""
+    """From serialised messages; other topics are passed over. ValueError: they do not make a run."""
+    end = int(metadata["duration_ns"])
     t_ns: list[int] = []
     loads: list[list[float]] = []
     events: list[Event] = []
     named: dict[str, list[tuple[int, dict[str, float]]]] = {"/ledger": [], "/load/budget": []}
     for topic, time, data in stored:
         if topic == "/load/structure":
-            message = messages.Load.FromString(data)
+            if not (t_ns[-1] if t_ns else 0) < time <= end:
+                raise ValueError(f"a window at {time / NS:g} s after {len(t_ns)} others of a run of {end / NS:g} s")
             t_ns.append(time)
-            loads.append([getattr(message, key) for key in messages.LOAD_FIELDS[3:]])
+            loads.append(_load(time, data))
         elif topic == "/events":
+            if not time <= end:
+                raise ValueError(f"an event at {time / NS:g} s of a run of {end / NS:g} s")
             events.append(_event(time, messages.Event.FromString(data)))
         elif topic in named:
             message = messages.Ledger.FromString(data)
@@ -42,6 +47,15 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
         texts,
         _columns(times, named["/load/budget"]),
     )
+
+
+def _load(t_ns: int, data: bytes) -> list[float]:
+    """Forces of the phases [N]."""
+    message = messages.Load.FromString(data)
+    forces: list[float] = [getattr(message, key) for key in messages.LOAD_FIELDS[3:]]
+    if not all(map(math.isfinite, forces)):
+        raise ValueError(f"the load at {t_ns / NS:g} s is not finite")
+    return forces
 
 
 def _event(t_ns: int, m: Any) -> Event:

@@ -1,41 +1,49 @@
-"""What can be read of a truncated recording, as a clean file."""
+"""What can be read of a recording that was cut off or is damaged, as a clean file."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-import mcap.writer
 from mcap.records import Attachment, Channel, McapRecord, Message, Metadata, Schema
 
 from cosim.analysis.run_data import RunData
-from cosim.recording.reader import RecordingError, records, run_data
+from cosim.outputs import whole
+from cosim.recording.metadata import END, sealed
+from cosim.recording.reader import run_data
+from cosim.recording.records import DamageError, Records
+from cosim.recording.writer import new_writer
 
 
 def recover(path: str | Path, out: str | Path) -> RunData:
-    """Write what can be read of a truncated recording as a clean file; returns what it holds."""
-    source, target = Path(path), Path(out)
-    if target.exists() and target.samefile(source):
-        raise RecordingError(f"{target}: recovery does not overwrite its source; name another file with -o")
-    data = run_data(source, records(source, until_damage=True))
-    if not len(data.t_ns):
-        raise RecordingError(f"{source}: holds no data, nothing to recover; run the scenario again")
-    with target.open("wb") as file:
-        writer: Any = mcap.writer.Writer(file)  # its methods carry no types
+    """Write what stands before the damage as a clean file; returns what it holds."""
+    source = Path(path)
+    data = run_data(source, undamaged(Records(source)))
+    with whole(Path(out), ".mcap") as part, part.open("wb") as file:
+        writer = new_writer(file)
         writer.start(profile="", library="cosim")
-        _copy(records(source, until_damage=True), writer)
+        _copy(undamaged(Records(source)), writer)
+        writer.add_metadata(END, sealed({"ended": data.ended}))
         writer.finish()
     return data
 
 
-def _copy(records: Iterator[McapRecord], writer: Any) -> None:
+def undamaged(records: Iterable[McapRecord]) -> Iterator[McapRecord]:
+    """Records up to the first that is damaged."""
+    try:
+        yield from records
+    except DamageError:
+        return
+
+
+def _copy(records: Iterable[McapRecord], writer: Any) -> None:
     schema: dict[int, int] = {}
     channel: dict[int, int] = {}
     for r in records:
         if isinstance(r, Attachment):
             writer.add_attachment(r.create_time, r.log_time, r.name, r.media_type, r.data)
-        elif isinstance(r, Metadata):
+        elif isinstance(r, Metadata) and r.name != END:
             writer.add_metadata(r.name, r.metadata)
         elif isinstance(r, Schema) and r.id not in schema:
             schema[r.id] = writer.register_schema(r.name, r.encoding, r.data)

@@ -1,33 +1,42 @@
 """Recordings written: a run becomes an MCAP file.
 
-Scenario, reference and run data are written first, and the file is flushed at every recorded frame, so that a killed
-run leaves a file that `cosim.recording.recover` can read. The same scenario gives the same bits: stamps are simulated
-time, and nothing of the machine (clock, path, user) is written.
+Scenario, reference and run data are written first, and the file is flushed after every window, so that a killed run
+leaves a file that holds all windows but the one under way. All is under checksums, see `cosim.recording.records`. The
+same scenario gives the same bits: stamps are simulated time, and nothing of the machine (clock, path, user) is written.
 """
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
-from importlib.metadata import version
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any, Self
 
 import mcap.writer
 from mcap_protobuf.schema import build_file_descriptor_set
 
+from cosim.errors import InputError
 from cosim.observer import RunInfo
+from cosim.outputs import drop, grow, trouble
 from cosim.recording.channels import CHANNELS, Channel, When
+from cosim.recording.metadata import COMPLETE, END, RUN, run_metadata, sealed
+from cosim.scenario.files import read_toml
+from cosim.scenario.scenario import Scenario
 from coupling.interface import Event, Frame
 
 MESH_EVERY = 4  #: recorded frames between two meshes of a sheet in which no cell fails
 
 
 class Recorder:
-    """Observer that writes a run to ``path``. Closing is idempotent; use it in ``finally`` or as a context manager."""
+    """Observer that writes a run to ``path``. Closing is idempotent; use it in ``finally`` or as a context manager.
 
-    def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS) -> None:
-        self.path = Path(path)
+    An existing recording is kept unless ``force``. FailedError names the file if it cannot be written on.
+    """
+
+    def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS, force: bool = False) -> None:
+        self.path, self.force = Path(path), force
+        self.ending = "it was stopped"  #: why the run ended, if it ends before its duration
+        self.recorded_ns = 0  #: end of the last window in the file
         self._channels = channels
         self._file: IO[bytes] | None = None
         self._writer: Any = None  # its methods carry no types
@@ -39,14 +48,17 @@ class Recorder:
         self._info = run_info
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
         self._cells, self._since_mesh, self._due_ns = -1, 0, self._every_ns
-        self._file = self.path.open("wb")
-        self._writer = mcap.writer.Writer(self._file)
-        self._writer.start(profile="", library="cosim")
-        self._write_run_data()
+        texts = attachments(run_info.scenario)
+        self._file = grow(self.path, ".mcap", self.force)
+        self._writer = new_writer(self._file)
+        self._do(self._writer.start, profile="", library="cosim")
+        for name, text in texts.items():
+            self._do(attach, self._writer, name, text)
+        self._do(self._writer.add_metadata, RUN, sealed(run_metadata(run_info, texts)))
         self._register()
         self._write(0, {When.WORLD})
         self._write(0, {When.START})
-        self._writer.flush()
+        self._do(self._writer.flush)
 
     def on_frame(self, frame: Frame) -> None:
         """Write numbers of the window, its events, and pictures if they are due."""
@@ -55,14 +67,23 @@ class Recorder:
             self._write(event.t_ns, {When.EVENT}, event)
         if self._is_recorded(frame):
             self._write(frame.t_ns, {When.PICTURE, When.MESH} if self._with_mesh(frame) else {When.PICTURE}, frame)
-            self._writer.flush()
+        self._do(self._writer.flush)
+        self.recorded_ns = frame.t_ns
 
     def on_close(self) -> None:
-        """Finish the file; what was written until now can be read."""
-        if self._file is not None:
-            self._writer.finish()
-            self._file.close()
+        """Finish the file; what was written until now can be read. A file without a window is taken away."""
+        if self._file is None:
+            return
+        if self.recorded_ns == 0:
+            self._do(self._file.close)
             self._file = None
+            drop(self.path)
+            return
+        ended = COMPLETE if self.recorded_ns >= self._info.duration_ns else self.ending
+        self._do(self._writer.add_metadata, END, sealed({"ended": ended}))
+        self._do(self._writer.finish)
+        self._do(self._file.close)
+        self._file = None
 
     close = on_close
 
@@ -71,6 +92,19 @@ class Recorder:
 
     def __exit__(self, *exception: object) -> None:
         self.on_close()
+
+    def _do(self, call: Callable[..., object], *arguments: Any, **named: Any) -> None:
+        """Something that writes; if it does not come to its end, the file is left as it is: cut off."""
+        try:
+            call(*arguments, **named)
+        except BaseException as error:
+            file, self._file = self._file, None
+            if file is not None:
+                with suppress(OSError):  # what is buffered cannot be written either
+                    file.close()
+            if isinstance(error, OSError):
+                raise trouble(self.path, error) from error
+            raise
 
     def _is_recorded(self, frame: Frame) -> bool:
         """Every so often, at the start and end, and whenever something breaks."""
@@ -86,15 +120,6 @@ class Recorder:
         due = cells != self._cells or self._since_mesh >= MESH_EVERY - 1
         self._cells, self._since_mesh = cells, 0 if due else self._since_mesh + 1
         return due
-
-    def _write_run_data(self) -> None:
-        scenario = self._info.scenario
-        attach(self._writer, "scenario.toml", scenario.resolved_toml())
-        attach(self._writer, "scenario.as-written.toml", scenario.text)
-        reference = scenario.folder / "reference.toml" if scenario.folder else None
-        if reference is not None and reference.is_file():
-            attach(self._writer, "reference.toml", reference.read_text(encoding="utf-8"))
-        self._writer.add_metadata("run", run_metadata(self._info))
 
     def _register(self) -> None:
         """All channels at once, in the order of the table, so that their numbers never depend on the run."""
@@ -112,7 +137,12 @@ class Recorder:
             data = channel.take(self._info, *item) if channel.when in when else None
             if data is not None:
                 self._count[topic] = self._count.get(topic, 0) + 1
-                self._writer.add_message(self._number[topic], t_ns, data, t_ns, self._count[topic])
+                self._do(self._writer.add_message, self._number[topic], t_ns, data, t_ns, self._count[topic])
+
+
+def new_writer(file: IO[bytes]) -> Any:
+    """Of a file all of whose bytes are under checksums."""
+    return mcap.writer.Writer(file, enable_data_crcs=True)
 
 
 def attach(writer: Any, name: str, text: str) -> None:
@@ -120,21 +150,10 @@ def attach(writer: Any, name: str, text: str) -> None:
     writer.add_attachment(0, 0, name, "application/toml", text.encode())
 
 
-def run_metadata(info: RunInfo) -> dict[str, str]:
-    """What identifies a run: strings, as MCAP wants them."""
-    scenario = info.scenario
-    return {
-        "format": "1",
-        "version": version("brash-ice"),
-        "scenario": scenario.name,
-        "title": scenario.title,
-        "seed": str(scenario.seed),
-        "overrides": json.dumps(list(scenario.overrides)),
-        "nodes": json.dumps(list(info.sheet_shape)),
-        "spacing_m": repr(float(info.d)),
-        "thickness_m": repr(info.thickness),
-        "drift_m_s": repr(float(scenario.drift.velocity)),
-        "ice_density": repr(float(scenario.ice.density)),
-        "duration_ns": str(info.duration_ns),
-        "window_ns": str(info.window_ns),
-    }
+def attachments(scenario: Scenario) -> dict[str, str]:
+    """Texts that belong to a run, by name."""
+    texts = {"scenario.toml": scenario.resolved_toml(), "scenario.as-written.toml": scenario.text}
+    reference = scenario.folder / "reference.toml" if scenario.folder else None
+    if reference is not None and reference.is_file():
+        texts["reference.toml"] = read_toml(reference, InputError)[0]
+    return texts

@@ -2,22 +2,43 @@
 
 from __future__ import annotations
 
+import unicodedata
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+from pydantic_core import PydanticCustomError
+
+from cosim.scenario.limits import Limits
 from cosim.scenario.section import Section
-from cosim.scenario.units import (
-    Time,
-)
+from cosim.scenario.units import Time
+
+
+def _without_controls(text: str) -> str:
+    """Text of one line, without escape sequences and without marks that turn the direction of reading."""
+    for c in text:
+        if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp"):
+            raise PydanticCustomError("value", "{text}", {"text": f"one line of plain text: remove {c!a}"})
+    return text
+
+
+Line = Annotated[str, AfterValidator(_without_controls), Field(max_length=200)]
 
 
 class Case(Section):
     """[scenario] What runs, and for how long."""
 
-    title: str  #: one line, shown by every command
-    description: str = ""  #: what happens in the case, and where it is from
-    duration: Time  #: simulated time [s]
-    seed: int = 0  #: of every random number of the run
+    title: Line = Field(examples=["Pier with a cone, ice of 60 cm"])  #: one line, shown by every command
+    #: what happens in the case, and where it is from
+    description: str = Field("", max_length=10_000, examples=["What happens, and where the case is from"])
+    duration: Annotated[Time, Limits("1 ms", "1e6 s", "60 s")]  #: simulated time [s]
+    seed: int = Field(0, ge=0, lt=2**63)  #: of every random number of the run
 
 
 class Recording(Section):
-    """[recording] What of a run is kept."""
+    """[recording] What of a run is kept, and what is called a peak."""
 
-    every: Time = 0.5  #: time between recorded frames; loads are recorded for every window [s]
+    #: time between recorded frames; loads are recorded for every window [s]
+    every: Annotated[Time, Limits("1 us", "1e6 s", "0.5 s")] = 0.5
+    #: peaks are those of the mean load over this time; default half a second at ice of 1 m, by Froude's law for other
+    #: ice: 0.5 s (h / 1 m)^0.5 at 9.81 m/s2, see `cosim.analysis.sustained` [s]
+    averaging: Annotated[Time, Limits("1 us", "1000 s", "0.5 s")] = None

@@ -6,10 +6,10 @@ A table is imported when a name is checked, because listing scenarios needs no s
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator
-from pydantic_core import PydanticCustomError
+from pydantic_core import PydanticCustomError, core_schema
 
 from cosim.nearest import hint
 
@@ -59,19 +59,24 @@ def strengths_of(names: Iterable[str]) -> dict[str, str]:
     return {field: criterion.name for criterion in reversed(chosen(names)) for field in criterion.needs}
 
 
-def one_of(table: Callable[[], Iterable[str]]) -> AfterValidator:
+@dataclass(frozen=True)
+class OneOf:
     """Refuses a name that the table does not hold, with the one that is meant most likely."""
 
-    def known(name: str) -> str:
-        if name not in table():
-            raise PydanticCustomError("name", "unknown name; {hint}", {"hint": hint(name, table())})
+    table: Callable[[], Iterable[str]]
+
+    def check(self, name: str) -> str:
+        """The name, if the table holds it."""
+        if name not in self.table():
+            raise PydanticCustomError("name", "unknown name; {hint}", {"hint": hint(name, self.table())})
         return name
 
-    return AfterValidator(known)
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
+        return core_schema.no_info_after_validator_function(self.check, handler(source))
 
 
-Scheme = Annotated[str, one_of(schemes)]
-StiffnessSet = Annotated[str, one_of(stiffness_sets)]
-StructureKind = Annotated[str, one_of(kinds_of_structure)]
-CriterionName = Annotated[str, one_of(criteria)]
-ContactModel = Annotated[str, one_of(contacts)]
+Scheme = Annotated[str, OneOf(schemes)]
+StiffnessSet = Annotated[str, OneOf(stiffness_sets)]
+StructureKind = Annotated[str, OneOf(kinds_of_structure)]
+CriterionName = Annotated[str, OneOf(criteria)]
+ContactModel = Annotated[str, OneOf(contacts)]

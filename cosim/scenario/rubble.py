@@ -2,35 +2,39 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from cosim.scenario.section import Coefficient, Section, Share
+from cosim.scenario.limits import Limits
+from cosim.scenario.section import Coefficient, Count, Friction, Section, Share
 from cosim.scenario.units import (
     Stress,
     Time,
     VolumeOrZero,
 )
 
-Friction = Coefficient | Literal["rate-dependent"]  #: 0.7 - 0.15 log10(v / 1e-6 m/s) (Lishman and Polojarvi 2015)
+SlipFriction = Friction | Literal["rate-dependent"]  #: 0.7 - 0.15 log10(v / 1e-6 m/s) (Lishman and Polojarvi 2015)
 
 
 class Rubble(Section):
     """[rubble] Broken ice as rigid blocks in vertical sections."""
 
     enabled: bool = True  #: false: pieces are taken away when they break off and counted as cleared
-    substep: Time = 0.005  #: constant step of the sections [s]
-    iterations: int = Field(30, ge=1)  #: of the impulse solver; at least the depth of a chain of blocks
-    columns_per_section: int = Field(1, ge=1)  #: node columns in one section
-    friction_ice_ice: Friction = 0.1  #: block on block and block on sheet; by rate of slip: 0.1 to 0.7
+    substep: Annotated[Time, Limits("1 us", "1 s", "5 ms")] = 0.005  #: constant step of the sections [s]
+    iterations: Count = 30  #: of the impulse solver; at least the depth of a chain of blocks
+    columns_per_section: Count = 1  #: node columns in one section
+    friction_ice_ice: SlipFriction = 0.1  #: block on block and block on sheet; by rate of slip: 0.1 to 0.7
     friction_structure: Friction = 0.1  #: block on structure
     restitution: Share = 0.1  #: of every pair of bodies
     form_drag: Coefficient = 1.0  #: C_d on what moves into the water
     skin_drag: Coefficient = 0.002  #: C_f along wetted faces
     added_mass: Coefficient = 0.2  #: share of the displaced mass of water that moves with a block
     backfill: Literal["full", "none", "filling"] = "filling"  #: how the top of a new block that is pushed down floods
-    filling_time: Time = 5.0  #: a weir, q = 1.7 H^1.5 m2/s with H = 1 m, fills the head on 10-15 m of ice in 3-7 s
-    contact_strength: Stress = None  #: pressure at which a contact of a block crushes; default compressive_strength
-    initial_volume: VolumeOrZero = 0.0  #: ice that has settled in front of the structure before the run [m^3]
-    threads: int = Field(1, ge=1)  #: over the sections; changes no bit of the result
+    #: a weir, q = 1.7 H^1.5 m2/s with H = 1 m, fills the head on 10-15 m of ice in 3-7 s
+    filling_time: Annotated[Time, Limits("1 us", "1e6 s", "5 s")] = 5.0
+    #: pressure at which a contact of a block crushes; default compressive_strength
+    contact_strength: Annotated[Stress, Limits("100 Pa", "10 GPa", "2.5 MPa")] = None
+    #: ice that has settled in front of the structure before the run [m^3]
+    initial_volume: Annotated[VolumeOrZero, Limits("0 m^3", "1e9 m^3", "200 m^3")] = 0.0
+    threads: Annotated[int, Field(ge=1, le=1024)] = 1  #: over the sections; changes no bit of the result

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cosim.analysis.sustained import averaging_time
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.text import complete, to_toml
 
@@ -42,6 +43,12 @@ class Scenario:
         """Simulated time [ns]."""
         duration: float = self.model.scenario.duration
         return round(duration * 1e9)
+
+    @property
+    def averaging(self) -> float:
+        """Peaks are those of the mean load over this time [s]; see `cosim.analysis.sustained`."""
+        given: float | None = self.model.recording.averaging
+        return averaging_time(self.model.ice.thickness, self.model.water.gravity) if given is None else given
 
     @property
     def window_ns(self) -> int:

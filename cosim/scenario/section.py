@@ -11,11 +11,13 @@ from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 Share = Annotated[float, Field(ge=0, le=1)]
-Coefficient = Annotated[float, Field(ge=0)]
+Coefficient = Annotated[float, Field(ge=0, le=100)]
+Friction = Annotated[float, Field(ge=0, le=2)]
+Count = Annotated[int, Field(ge=1, le=1_000_000)]
 
 
 def fault(key: str, text: str) -> PydanticCustomError:
-    """An error that a check over several keys raises; ``key`` is the one to change, relative to the section."""
+    """An error that a rule over several keys finds; ``key`` is the one to change, with its section."""
     return PydanticCustomError("check", "{text}", {"text": text, "key": key})
 
 

@@ -2,95 +2,53 @@
 
 from __future__ import annotations
 
-import math
-from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
-from cosim.scenario.names import ContactModel, StructureKind, kinds_of_structure
-from cosim.scenario.section import Coefficient, Section, fault
+from cosim.scenario.limits import Limits
+from cosim.scenario.names import ContactModel, StructureKind
+from cosim.scenario.section import Friction, Section
 from cosim.scenario.units import (
     Angle,
     AngleOrZero,
+    Height,
     Length,
-    ProfilePoints,
+    LengthOrZero,
     Stress,
+    Unit,
+    list_of,
 )
 
-#: what a missing key may look like
-EXAMPLES = {
-    "slope": '"45 deg"',
-    "waterline_radius": '"15 m"',
-    "neck_radius": '"9 m"',
-    "sides": "6",
-    "orientation": '"30 deg"',
-    "profile": '[["-20 m", "9 m"], ["-6 m", "9 m"], ["5 m", "20 m"]]',
-}
+_Point = list_of(
+    Unit("m", "-6 m", '["-6 m", "9 m"]'),
+    Annotated[Height, Limits("-990 m", "500 m", "-6 m")],
+    Annotated[LengthOrZero, Limits("0 m", "2 km", "9 m")],
+)
+ProfilePoints: Any = list_of(Unit("m", "-6 m", '[["-6 m", "9 m"], ["5 m", "20 m"]]'), _Point, ...)
 
 
 class Structure(Section):
     """[structure] A surface on which the ice breaks, and which of the measures describe it."""
 
-    kind: StructureKind  #: shape of the surface; a plane is infinitely wide, a profile a body of several slopes
+    #: shape of the surface; a plane is infinitely wide, a profile a body of several slopes
+    kind: StructureKind = Field(examples=["cone"])
     breaking: Literal["downward", "upward"] = "downward"  #: which way the face bends the ice
-    slope: Angle = None  #: from the horizontal; every kind but a profile needs it [rad]
-    waterline_radius: Length = None  #: of a cone; of one with flat sides half the width across flats [m]
-    neck_radius: Length = None  #: the cone narrows to this radius, beyond it stands a cylinder [m]
-    sides: Annotated[int, Field(ge=3)] | None = None  #: of a multi-sided cone
-    orientation: AngleOrZero = None  #: of its sides: 0 a flat side, 180 deg / sides a corner towards the ice [rad]
+    #: from the horizontal; every kind but a profile needs it [rad]
+    slope: Annotated[Angle, Limits("1 deg", "89 deg", "55 deg")] = None
+    #: of a cone; of one with flat sides half the width across flats [m]
+    waterline_radius: Annotated[Length, Limits("1 mm", "2 km", "5 m")] = None
+    #: the cone narrows to this radius, beyond it stands a cylinder [m]
+    neck_radius: Annotated[Length, Limits("1 mm", "2 km", "3 m")] = None
+    sides: Annotated[int, Field(ge=3, le=360)] | None = Field(None, examples=[6])  #: of a multi-sided cone
+    #: of its sides: 0 a flat side, 180 deg / sides a corner towards the ice [rad]
+    orientation: Annotated[AngleOrZero, Limits("0 deg", "360 deg", "30 deg")] = None
     #: of a body of revolution: heights and radii from its lowest point up to the height that top says [m]
     profile: ProfilePoints = None
-    toe_depth: Length = None  #: depth of the structure's lower end, below it nothing is touched [m]
-    top: Length = 5.0  #: height of the structure above water; over a lower one ice may ride [m]
-
-    @model_validator(mode="after")
-    def _has_a_shape(self) -> Self:
-        if self.slope is not None and self.slope >= math.pi / 2:
-            raise fault("slope", "a slope lies between 0 and 90 deg")
-        kind = kinds_of_structure()[self.kind]
-        for key, example in EXAMPLES.items():
-            given = getattr(self, key) is not None
-            if given and key not in kind.needs + kind.takes:
-                raise fault(key, f"a {self.kind} has none: remove the key or change structure.kind")
-            if not given and key in kind.needs:
-                raise fault(key, f"missing; a {self.kind} needs it, for example {key} = {example}")
-        return self
-
-    @model_validator(mode="after")
-    def _narrows_to_its_neck(self) -> Self:
-        if self.waterline_radius is None:
-            return self
-        if self.neck_radius is not None and self.neck_radius >= self.waterline_radius:
-            raise fault("neck_radius", f"must be below the waterline radius of {self.waterline_radius:g} m")
-        if self.breaking == "upward" and self.toe_depth is None:
-            raise fault(
-                "toe_depth",
-                "missing; an upward-breaking cone widens downwards to its rim: add its depth, "
-                'for example toe_depth = "4 m"',
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _profile_is_that_of_a_body(self) -> Self:
-        if self.profile is None:
-            return self
-        z, r = zip(*self.profile, strict=True)
-        if len(z) < 2 or any(b <= a for a, b in pairwise(z)):
-            raise fault("profile", "needs two or more points [height, radius], each higher than the one before")
-        if not z[0] < 0.0 < z[-1] or not max(r) > 0.0:
-            raise fault("profile", "misses the waterline; give a lowest point below and a highest above height 0")
-        if not math.isclose(z[-1], self.top):
-            raise fault("profile", f'ends at {z[-1]:g} m, the structure at {self.top:g} m; set top = "{z[-1]:g} m"')
-        if self.toe_depth is not None and not math.isclose(self.toe_depth, -z[0]):
-            raise fault("toe_depth", f"the profile begins at {z[0]:g} m; remove the key")
-        above = next(k for k, height in enumerate(z) if height > 0.0)
-        if r[above] == r[above - 1] or (r[above] > r[above - 1]) != (self.breaking == "downward"):
-            way = "widens" if self.breaking == "downward" else "narrows"
-            raise fault(
-                "profile", f"to break ice {self.breaking} a structure {way} upwards at the waterline; see breaking"
-            )
-        return self
+    #: depth of the structure's lower end, below it nothing is touched [m]
+    toe_depth: Annotated[Length, Limits("1 mm", "990 m", "6 m")] = None
+    #: height of the structure above water; over a lower one ice may ride [m]
+    top: Annotated[Length, Limits("1 mm", "500 m", "4 m")] = 5.0
 
     @property
     def toe(self) -> float | None:
@@ -102,5 +60,6 @@ class Contact(Section):
     """[contact] Sheet against structure."""
 
     model: ContactModel = "overlap"  #: the thesis's contact of 6.2, or ice that crushes
-    strength: Stress  #: overlap: "purely artificial" parameter of the thesis; crushing: strength of the ice [Pa]
-    friction: Coefficient  #: sheet against structure
+    #: overlap: "purely artificial" parameter of the thesis; crushing: strength of the ice [Pa]
+    strength: Annotated[Stress, Limits("100 Pa", "10 GPa", "2.5 MPa")]
+    friction: Friction = Field(examples=[0.1])  #: sheet against structure

@@ -32,7 +32,7 @@ def _with_unit(value: Any, metadata: Sequence[Any]) -> Any:
 
 def to_toml(table: dict[str, Any], prefix: str = "") -> str:
     """Tables of strings, numbers, booleans and lists as TOML. Values before sub-tables, in the given order."""
-    lines = [f"{key} = {_value(value)}" for key, value in table.items() if not isinstance(value, dict)]
+    lines = [f"{key} = {value_text(value)}" for key, value in table.items() if not isinstance(value, dict)]
     if prefix and lines:
         lines.insert(0, f"[{prefix}]")
     text = "\n".join(lines) + ("\n\n" if lines else "")
@@ -42,9 +42,10 @@ def to_toml(table: dict[str, Any], prefix: str = "") -> str:
     return text
 
 
-def _value(value: Any) -> str:
+def value_text(value: Any) -> str:
+    """One value as TOML."""
     if isinstance(value, list | tuple):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
+        return "[" + ", ".join(value_text(item) for item in value) + "]"
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):

@@ -10,6 +10,7 @@ import math
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from types import GenericAlias
 from typing import Annotated, Any
@@ -43,47 +44,103 @@ def to_si(value: object, unit: Unit) -> float:
     """``"8.7 GPa"`` -> 8.7e9. Floats come from defaults and derived values only, never from a file."""
     if isinstance(value, bool) or not isinstance(value, str):
         shown = f"{value} {unit.si}" if isinstance(value, int | float) and not isinstance(value, bool) else unit.example
-        raise _fault(f'a quantity needs its unit: write it as a string, for example "{shown}"')
-    quantity = _parse(value, unit)
+        raise PydanticCustomError("quantity", f'a quantity needs its unit: write it as a string, for example "{shown}"')
+    number, name = split(value, unit)
     try:
-        magnitude = float(quantity.m_as(unit.si))
+        units = _registry().Unit(name)
     except Exception:
-        raise _fault(f'wrong unit, this quantity is measured in {unit.si}: for example "{unit.example}"') from None
+        raise _fault("unknown unit; write number and unit", unit) from None
+    _is_of_its_kind(units, unit)
+    try:
+        magnitude = float(_registry().Quantity(number, units).m_as(unit.si))
+    except Exception:
+        raise _fault(f"wrong unit, this quantity is measured in {unit.si}", unit) from None
     if not math.isfinite(magnitude):
-        raise _fault(f'not a finite number; for example "{unit.example}"')
+        raise _fault("not a finite number", unit)
     return magnitude
 
 
-def _parse(text: str, unit: Unit) -> Any:
-    """The pint quantity of a text; a text without unit, or with an unknown one, is refused."""
-    remedy = f'write number and unit, for example "{unit.example}"'
-    if not re.match(r"\s*[-+]?\.?(\d|nan|inf)", text):
-        raise _fault(f"not a quantity; {remedy}")
-    try:
-        quantity = _registry().Quantity(text)
-        has_unit = bool(quantity._units)
-    except Exception as error:
-        name = type(error).__name__
-        problem = "unknown unit" if name == "UndefinedUnitError" else "not a quantity"
-        raise _fault(f"{problem}; {remedy}") from None
-    if not has_unit:
-        raise _fault(f'a quantity needs its unit; for example "{unit.example}"')
-    return quantity
+def dimensions(si: str) -> tuple[Fraction, Fraction, Fraction]:
+    """Powers of length, time and mass in a unit, in sixths at the finest."""
+    powers = _registry().Unit(si).dimensionality
+    found = (Fraction(powers.get(f"[{name}]", 0)).limit_denominator(6) for name in ("length", "time", "mass"))
+    length, time, mass = found
+    return length, time, mass
 
 
-def _fault(text: str) -> PydanticCustomError:
-    return PydanticCustomError("quantity", "{text}", {"text": text})
+def si_of(text: str) -> float:
+    """A quantity of the program itself in SI, whatever its kind."""
+    number, name = split(text, Unit("SI", "1 m"))
+    return float(_registry().Quantity(number, name).to_base_units().magnitude)
+
+
+NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?"
+_FACTOR = r"(?:[^\W\d_]+|°)(?:\s?(?:\^|\*\*)\s?-?\d(?:\.\d)?)?"
+UNIT = rf"{_FACTOR}(?:(?:\s?[*/·]\s?|\s){_FACTOR}){{0,4}}"
+QUANTITY = re.compile(rf"\s*({NUMBER})\s*({UNIT})\s*")
+ANGLES = ("degree", "radian", "milliradian", "grade", "turn", "arcminute", "arcsecond")
+LONGEST = 80  #: characters of a quantity
+
+
+def split(text: str, unit: Unit) -> tuple[float, str]:
+    """The one number and the one unit of a text; anything else is refused with what is wrong about it."""
+    found = QUANTITY.fullmatch(text) if len(text) <= LONGEST else None
+    if found is None:
+        raise _fault(_what_is_wrong(text), unit)
+    return float(found[1]), found[2]
+
+
+def _what_is_wrong(text: str) -> str:
+    """Why a text is no quantity. Nothing of it is computed."""
+    plain = text.strip()
+    number, rest = re.match(r"([-+]?[\d.,'_\s]*)(.*)", plain[:LONGEST], re.DOTALL).groups()  # type: ignore[union-attr]
+    digits = number.strip()
+    if len(text) > LONGEST:
+        return f"not a quantity, it has {len(text)} characters; write one number and one unit"
+    if re.match(r"[-+]?(nan|inf)", plain, re.IGNORECASE):
+        return "not a finite number; write number and unit"
+    if digits and not rest:
+        return "a quantity needs its unit" if re.fullmatch(NUMBER, digits) else "not one number; write number and unit"
+    if re.search(r"\d[\s'_]\d", digits) or ("," in digits and "." in digits) or digits.count(",") > 1:
+        return "digits are not grouped, and a decimal point is a point"
+    if re.fullmatch(r"[-+]?\d+,\d+", digits):
+        return f"a comma is no decimal point; write {digits.replace(',', '.')} {rest}"
+    if digits and rest.startswith("%"):
+        return "% is no unit of a quantity"
+    if (digits and rest[:1] in "*/^+-(") or digits.count(".") > 1:
+        return "one number is wanted, nothing is computed"
+    return "not a quantity; write number and unit"
+
+
+def _is_of_its_kind(units: Any, unit: Unit) -> None:
+    """An angle has a unit of angles, and nothing else has one: to the registry they are plain numbers, as % is."""
+    names = [str(name) for name in units._units]
+    plain = [name for name in names if not _registry().get_dimensionality(name)]
+    if unit.si == "rad":
+        if len(names) != 1 or plain != names or names[0] not in ANGLES or str(units) != names[0]:
+            raise _fault("not a unit of angles", unit)
+    elif plain:
+        raise _fault(f"wrong unit, this quantity is measured in {unit.si}", unit)
+
+
+def _fault(text: str, unit: Unit) -> PydanticCustomError:
+    """What is wrong, and the example of this kind of quantity; `cosim.scenario.errors` puts that of the key there."""
+    return PydanticCustomError("quantity", "{text}; for example {example}", {"text": text, "example": unit.written})
+
+
+def _refused(text: str) -> PydanticCustomError:
+    return PydanticCustomError("value", "{text}", {"text": text})
 
 
 def _at_least_zero(value: float) -> float:
     if value < 0:
-        raise _fault("must not be negative")
+        raise _refused("must not be negative")
     return value
 
 
 def _above_zero(value: float) -> float:
     if value <= 0:
-        raise _fault("must be greater than zero")
+        raise _refused("must be greater than zero")
     return value
 
 
@@ -91,13 +148,13 @@ def _any_sign(value: float) -> float:
     return value
 
 
-def _list_of(unit: Unit, *kinds: Any) -> Any:
+def list_of(unit: Unit, *kinds: Any) -> Any:
     """A list of ``kinds``, of any number where the second is an ellipsis; read as a tuple."""
 
     def as_tuple(value: object) -> object:
-        if not isinstance(value, list | tuple) or (... not in kinds and len(value) != len(kinds)):
+        if not isinstance(value, list | tuple) or (not value if ... in kinds else len(value) != len(kinds)):
             count = "several" if ... in kinds else f"{len(kinds)}"
-            raise _fault(f"write {count} values in brackets, for example {unit.written}")
+            raise _fault(f"write {count} values in brackets", unit)
         return tuple(value)
 
     return Annotated[GenericAlias(tuple, kinds), unit, BeforeValidator(as_tuple)]
@@ -124,8 +181,5 @@ StressOrZero = _quantity("Pa", "0 kPa", _at_least_zero)
 LengthOrZero = _quantity("m", "19 m", _at_least_zero)
 EnergyPerAreaOrZero = _quantity("J/m^2", "15 J/m^2", _at_least_zero)
 VolumeOrZero = _quantity("m^3", "3000 m^3", _at_least_zero)
-_AnyVelocity = _quantity("m/s", "0.1 m/s", _any_sign)
-_Height = _quantity("m", "-6 m", _any_sign)
-PlanVelocity = _list_of(Unit("m/s", "0.1 m/s", '["0.1 m/s", "0 m/s"]'), _AnyVelocity, _AnyVelocity)
-_Point = _list_of(Unit("m", "-6 m", '["-6 m", "9 m"]'), _Height, LengthOrZero)
-ProfilePoints = _list_of(Unit("m", "-6 m", '[["-6 m", "9 m"], ["5 m", "20 m"]]'), _Point, ...)
+AnyVelocity = _quantity("m/s", "0.1 m/s", _any_sign)
+Height = _quantity("m", "-6 m", _any_sign)

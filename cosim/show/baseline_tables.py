@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from cosim.show.baseline_cells import BESIDE, beside_rows, method_cells, remarks
+from cosim.show.baseline_cells import beside_table, method_cells, remarks, scale_of_methods
 from cosim.show.console import new_table, print_line, stdout
+from cosim.show.scale import Scale, significant
 
 
 def print_baseline(title: str, methods: dict[str, dict[str, Any]]) -> None:
     """`cosim baseline`: loads and terms, then what is assumed and what is not verified."""
-    table = new_table("formula", "Fx [MN]", "Fz [MN]", "breaking", "terms", title=f"Design formulas: {title}")
+    scale = scale_of_methods(methods.values())
+    heads = ("formula", f"Fx [{scale.unit}]", f"Fz [{scale.unit}]", "breaking", "terms")
+    table = new_table(*heads, title=f"Design formulas: {title}")
     for found in methods.values():
-        table.add_row(*method_cells(found), _terms(found))
+        table.add_row(*method_cells(found, scale), _terms(found, scale))
     stdout.print(table)
     for found in methods.values():
         print_line(f"{found['title']}: {found['source']}; {found['caveat']}")
@@ -25,16 +28,17 @@ def print_baseline(title: str, methods: dict[str, dict[str, Any]]) -> None:
         print_line(f"  {key} = {text}")
 
 
-def _terms(found: dict[str, Any]) -> str:
+def _terms(found: dict[str, Any], scale: Scale) -> str:
     if "refused" in found:
         return str(found["refused"])
-    return ", ".join(f"{name} {value * 1e-6:.4g}" for name, value in found["terms"].items())
+    return ", ".join(f"{name} {significant(value / scale.size)}" for name, value in found["terms"].items())
 
 
 def print_beside(design: dict[str, Any]) -> None:
     """The design formulas of `cosim compare`; ratio = simulated / design."""
-    table = new_table(*BESIDE, title="Peak beside design formulas")
-    for row in beside_rows(design):
+    head, rows = beside_table(design)
+    table = new_table(*head, title="Peak beside design formulas")
+    for row in rows:
         table.add_row(*row)
     stdout.print(table)
     for line in remarks(design):

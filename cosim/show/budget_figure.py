@@ -8,6 +8,7 @@ import numpy as np
 
 from cosim.analysis.budget import carriers
 from cosim.analysis.run_data import RunData
+from cosim.show.scale import scale_of
 from coupling.interface import Array
 
 if TYPE_CHECKING:
@@ -29,17 +30,19 @@ OTHER = "#20707a"  #: of loads on the sheet
 
 def draw(figure: Figure, run: RunData) -> None:
     """Terms over time, stacked from zero up where they lift the structure and down where not; the total on top."""
+    run = run.lasting
     axes = figure.subplots(2, 1, sharex=True)
+    scale = scale_of((np.abs(run.component(axis)).max() for axis in ("fz", "fx")), "N")
     drawn = carriers(run)
     colours = [COLOURS.get(name, OTHER) for name in drawn]
     for ax, axis in zip(axes, ("fz", "fx"), strict=True):
-        terms = np.array([run.budget[f"{axis}_{name}"] for name in drawn]) / 1e6
+        terms = np.array([run.budget[f"{axis}_{name}"] for name in drawn]) / scale.size
         for side, label in ((np.maximum(terms, 0.0), True), (np.minimum(terms, 0.0), False)):
             names = [name.replace("_", " ") for name in drawn] if label else ()
             ax.stackplot(run.t, side, colors=colours, labels=names, alpha=0.8, lw=0)
-        total = run.component(axis) / 1e6
+        total = run.component(axis) / scale.size
         ax.plot(run.t, total, "k", lw=0.7, label="total")
-        ax.set_ylabel(f"{axis.capitalize()} [MN]")
+        ax.set_ylabel(f"{axis.capitalize()} [{scale.unit}]")
         _focus(ax, terms, total)
     figure.legend(*axes[0].get_legend_handles_labels(), ncols=8, fontsize=7, loc="outside upper center")
     axes[1].set_xlabel("time [s]")
@@ -49,7 +52,7 @@ def draw(figure: Figure, run: RunData) -> None:
 def _focus(ax: Axes, terms: Array, total: Array) -> None:
     """Limits in which the load is seen; how much of the stacks sticks out is said in the picture."""
     up, down = np.maximum(terms, 0.0).sum(axis=0), np.minimum(terms, 0.0).sum(axis=0)
-    high, low = 1.15 * max(total.max(), 1e-3), min(1.15 * total.min(), -0.5 * total.max())
+    high, low = 1.15 * max(total.max(), 1e-9), min(1.15 * total.min(), -0.5 * total.max())
     out = np.mean((up > high) | (down < low))
     ax.set_ylim(low, high)
     if out > 0.0:

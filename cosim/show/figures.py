@@ -1,7 +1,4 @@
-"""Figures of a recorded run: loads by phase, masses, where the energy went.
-
-They are drawn on a figure of matplotlib (extra ``report``).
-"""
+"""Figures of a recorded run: loads by phase, masses, where the energy went."""
 
 from __future__ import annotations
 
@@ -12,6 +9,8 @@ import numpy as np
 
 from cosim.analysis.run_data import RunData
 from cosim.show import budget_figure
+from cosim.show.cells import over_text
+from cosim.show.scale import scale_of
 from coupling.energy import LIMIT, LOAD_WORK
 from coupling.interface import PHASES, Array
 
@@ -51,32 +50,40 @@ ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
 
 
 def has_data(title: str, run: RunData) -> bool:
-    """Whether a figure has something to show: a recording may hold no energy balance and no force budget."""
-    needs = {"drift": "drift_work" in run.ledger, "carries": bool(run.budget)}
+    """Whether a figure has something to show: a recording may hold no balances and no force budget."""
+    needs = {
+        "drift": {"drift_work", "energy_residual"} <= set(run.ledger),
+        "carries": bool(run.budget),
+        "left": set(ICE[1:]) <= set(run.ledger),
+    }
     return all(there for word, there in needs.items() if word in title)
 
 
 def draw_loads(figure: Figure, run: RunData) -> None:
-    """Fx and Fz by phase, stacked, with the total as a line."""
+    """Fx and Fz by phase, stacked, with the total as a line; means over the averaging time, as the peaks are."""
+    over, run = over_text(run.averaging), run.lasting
+    scale = scale_of((np.abs(run.component(name)).max() for name in ("fx", "fz")), "N")
     axes = figure.subplots(2, 1, sharex=True)
-    for ax, name, label in zip(axes, ("fx", "fz"), ("Fx [MN]", "Fz [MN]"), strict=True):
-        phases = np.array([run.component(name, p) for p in PHASES]) / 1e6
+    for ax, name, label in zip(axes, ("fx", "fz"), ("Fx", "Fz"), strict=True):
+        phases = np.array([run.component(name, p) for p in PHASES]) / scale.size
         for side, labels in ((np.maximum, list(PHASES)), (np.minimum, ())):  # what presses down is stacked downwards
             ax.stackplot(run.t, side(phases, 0.0), colors=COLOURS.values(), labels=labels, alpha=0.75, lw=0)
         ax.plot(run.t, phases.sum(axis=0), "k", lw=0.7, label="total")
-        ax.set_ylabel(label)
+        ax.set_ylabel(f"{label} [{scale.unit}]")
         ax.grid(alpha=0.3)
     figure.legend(*axes[0].get_legend_handles_labels(), ncols=4, fontsize=8, loc="outside upper center")
-    axes[1].set_xlabel("time [s]")
+    axes[1].set_xlabel(f"time [s]; means over {over}")
     axes[1].set_xlim(0.0, run.t[-1])
 
 
 def draw_mass(figure: Figure, run: RunData) -> None:
     """Where the ice is that has left the sheet."""
     ax = figure.subplots()
-    for name in ICE[1:]:
-        ax.plot(run.t, run.ledger[name] / 1e6, label=name.removesuffix("_mass"))
-    ax.set(xlabel="time [s]", ylabel="mass [1000 t]", xlim=(0.0, run.t[-1]))
+    drawn = [name for name in ICE[1:] if name in run.ledger]
+    scale = scale_of((np.nanmax(run.ledger[name]) for name in drawn), "kg")
+    for name in drawn:
+        ax.plot(run.t, run.ledger[name] / scale.size, label=name.removesuffix("_mass"))
+    ax.set(xlabel="time [s]", ylabel=f"mass [{scale.unit}]", xlim=(0.0, run.t[-1]))
     ax.legend()
     ax.grid(alpha=0.3)
 
@@ -85,8 +92,10 @@ def draw_energy(figure: Figure, run: RunData) -> None:
     """Where the drift's work is or went, what else put energy in (below zero), and what is not explained."""
     ax, low = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
     loads = [name for name in run.ledger if name.endswith(LOAD_WORK)]
-    work = energy_group(run, ["drift_work", *loads]) / 1e6
-    groups = {name: energy_group(run, names) / 1e6 for name, (_, names) in ENERGY.items()}
+    joule = energy_group(run, ["drift_work", *loads])
+    scale = scale_of((np.nanmax(np.abs(joule)),), "J")
+    work = joule / scale.size
+    groups = {name: energy_group(run, names) / scale.size for name, (_, names) in ENERGY.items()}
     colours = [colour for colour, _ in ENERGY.values()]
     ax.stackplot(run.t, np.maximum(list(groups.values()), 0.0), labels=list(groups), colors=colours, lw=0)
     ax.stackplot(run.t, np.minimum(list(groups.values()), 0.0), colors=colours, lw=0)
@@ -94,10 +103,10 @@ def draw_energy(figure: Figure, run: RunData) -> None:
     ax.plot(run.t, work, "k", lw=1.4, label="work of the drift" + ", of loads" * bool(loads))
     ax.axhline(0.0, color="k", lw=0.6)
     ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
-    ax.set(ylabel="energy [MJ]", xlim=(0.0, run.t[-1]))
+    ax.set(ylabel=f"energy [{scale.unit}]", xlim=(0.0, run.t[-1]))
     figure.legend(*ax.get_legend_handles_labels(), fontsize=8, loc="outside right upper")
     largest = np.maximum.accumulate(np.maximum(np.abs(work), 1e-6))
-    low.semilogy(run.t, np.maximum(np.abs(run.ledger["energy_residual"]) / 1e6 / largest, 1e-12), "k", lw=0.9)
+    low.semilogy(run.t, np.maximum(np.abs(run.ledger["energy_residual"]) / scale.size / largest, 1e-12), "k", lw=0.9)
     low.axhline(LIMIT, color="#b03a2e", lw=0.9, ls="--")
     low.text(0.01 * run.t[-1], LIMIT, "a run stops here", color="#b03a2e", fontsize=8, va="bottom")
     low.set(xlabel="time [s]", ylabel="residual / work", ylim=(1e-12, 1.0))

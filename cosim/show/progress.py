@@ -1,4 +1,4 @@
-"""Progress of a run on standard error."""
+"""Progress of a run on standard error, in 80 columns."""
 
 from __future__ import annotations
 
@@ -9,44 +9,54 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from cosim.observer import RunInfo
-from cosim.show.console import stderr
+from cosim.show.console import as_line, stderr
+from cosim.show.talk import QUIET, VERBOSE, Talk
 from coupling.interface import NS, Frame
+
+TITLE, BAR = 22, 12  #: columns
+LOGGED = 10  #: lines about the progress of a run in a log file
 
 
 class ProgressBar:
     """Observer that shows simulated time, rate and the time that remains."""
 
-    def __init__(self, console: Console | None = None) -> None:
+    def __init__(self, talk: Talk, console: Console | None = None) -> None:
+        self._talk = talk
         self._progress = Progress(
-            TextColumn("{task.description}"),
-            BarColumn(),
-            TextColumn("{task.fields[now]}"),
-            TextColumn("{task.fields[rate]}"),
-            TextColumn("remaining"),
-            TimeRemainingColumn(),
+            TextColumn("{task.description}", markup=False),
+            BarColumn(BAR),
+            TextColumn("{task.fields[now]}", markup=False),
+            TextColumn("{task.fields[rate]}", markup=False),
+            TimeRemainingColumn(compact=True),
+            TextColumn("left"),
             console=console or stderr,
             transient=True,
+            disable=talk.level == QUIET,
         )
         self._task: TaskID | None = None
+        self._logged = 0
 
     def on_start(self, run_info: RunInfo) -> None:
         """Show the bar."""
         self._duration = run_info.duration_ns / NS
         self._begin = time.monotonic()
-        self._task = self._progress.add_task(run_info.scenario.title, total=self._duration, now="", rate="")
+        title = as_line(run_info.scenario.title)
+        short = title if len(title) <= TITLE else f"{title[: TITLE - 1]}…"
+        self._task = self._progress.add_task(short, total=self._duration, now="", rate="")
         self._progress.start()
 
     def on_frame(self, frame: Frame) -> None:
-        """Move the bar to the end of the window; a line for each kind of event."""
+        """Move the bar to the end of the window; a line for each kind of event, or for each event."""
         if self._task is None:
             return
         t = frame.t_ns / NS
-        wall = max(time.monotonic() - self._begin, 1e-9)
-        self._progress.update(
-            self._task, completed=t, now=f"{t:6.1f} of {self._duration:g} s", rate=f"{t / wall:.2f} x real time"
-        )
-        for line in event_lines(frame):
-            self._progress.console.print(line, highlight=False, markup=False, soft_wrap=True)
+        rate = t / max(time.monotonic() - self._begin, 1e-9)
+        self._progress.update(self._task, completed=t, now=f"{t:.5g}/{self._duration:g} s", rate=f"{rate:.2g}x")
+        for line in all_event_lines(frame) if self._talk.level >= VERBOSE else event_lines(frame):
+            self._talk.note(line)
+        if t * LOGGED >= (self._logged + 1) * self._duration:
+            self._logged = int(t * LOGGED / self._duration)
+            self._talk.keep(f"{t:8.2f} s of {self._duration:g} s, {rate:.2g} x real time")
 
     def on_close(self) -> None:
         """Take the bar away."""
@@ -61,4 +71,12 @@ def event_lines(frame: Frame) -> list[str]:
     return [
         f"{event.t_ns / NS:8.2f} s  {kind}: {event.text}{more[kind]}"
         for kind, event in sorted(first.items(), key=lambda item: item[1].t_ns)
+    ]
+
+
+def all_event_lines(frame: Frame) -> list[str]:
+    """One line for each event of a window, with its place."""
+    return [
+        f"{e.t_ns / NS:10.4f} s  {e.kind}: {e.text} at x = {e.position[0]:.3g} m, y = {e.position[1]:.3g} m"
+        for e in frame.events
     ]

@@ -6,6 +6,7 @@ Nothing is converted on disk: the recording is read and sent to a viewer, saved 
 from __future__ import annotations
 
 import time
+import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,14 +14,19 @@ from typing import Any
 
 import numpy as np
 import rerun as rr
+from google.protobuf.message import DecodeError
+from rerun.components import AggregationPolicy
 
 from cosim.analysis.run_data import RunData
-from cosim.errors import InputError
+from cosim.errors import FailedError, InputError
+from cosim.outputs import whole
 from cosim.recording import shapes
-from cosim.recording.reader import messages, read_run
+from cosim.recording.reader import messages
 from cosim.show import pictures
-from cosim.show.layout import TIMELINE, blueprint
-from cosim.show.viewer import headless_viewer, wait_until_loaded
+from cosim.show.console import print_line
+from cosim.show.layout import TIMELINE, blueprint, load_scale
+from cosim.show.opening import opened
+from cosim.show.viewer import headless_viewer, screen_viewer, wait_until_loaded, web_viewer
 from coupling.interface import NS, PHASES, Phase
 
 APPLICATION = "cosim"
@@ -29,29 +35,37 @@ TOTAL_RGB = (235, 235, 235)
 
 def save(recording: Path, out: Path) -> None:
     """Write a rerun file with pictures, curves and layout."""
-    with _stream() as stream:
-        run = read_run(recording)
-        stream.save(out, default_blueprint=blueprint(run))
-        send(stream, recording, run)
+    run = opened(recording)
+    with whole(out, ".rrd") as part:
+        try:
+            with _stream() as stream:
+                stream.save(part, default_blueprint=blueprint(run))
+                send(stream, recording, run)
+        except RuntimeError as error:  # rerun's only one
+            raise FailedError(f"{out}: {error}; free space or write elsewhere") from error
 
 
 def open_viewer(recording: Path) -> None:
     """Open the viewer on this machine's screen."""
-    with _stream() as stream:
-        run = read_run(recording)
-        stream.spawn(default_blueprint=blueprint(run))
+    run = opened(recording)
+    with screen_viewer() as url, _stream() as stream:
+        stream.connect_grpc(url, default_blueprint=blueprint(run))
         send(stream, recording, run)
 
 
-def serve(recording: Path) -> None:
+def serve(recording: Path, port: int | None = None, browser: bool = True) -> None:
     """Serve viewer and data to a browser on this machine, until interrupted."""
-    with _stream() as stream:
-        run = read_run(recording)
-        url = stream.serve_grpc(default_blueprint=blueprint(run))
-        send(stream, recording, run)
-        rr.serve_web_viewer(connect_to=url, open_browser=True)
-        while True:
-            time.sleep(1)
+    run = opened(recording)
+    with web_viewer(port) as (url, page, process):
+        with _stream() as stream:
+            stream.connect_grpc(url, default_blueprint=blueprint(run))
+            send(stream, recording, run)
+        print_line(page)
+        print_line("this machine only; Ctrl-C ends it")
+        if browser:
+            webbrowser.open(page)
+        code = process.wait()
+    raise FailedError(f"the viewer ended by itself (exit code {code}); try again, or save a .rrd with --save")
 
 
 def screenshot(
@@ -61,7 +75,7 @@ def screenshot(
 
     ``fade`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
     """
-    run = read_run(recording)
+    run = opened(recording)
     at = float(run.t[-1]) if at is None else at
     if not 0 <= at <= run.t[-1]:
         raise InputError(f"--time {at:g}: outside of the run; give 0 to {run.t[-1]:g} s")
@@ -82,22 +96,38 @@ def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
     for event in run.events:
         stream.set_time(TIMELINE, duration=event.t_ns / NS)
         stream.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
-    for mesh in pictures.meshes(messages(recording, pictures.TOPICS), float(run.metadata["thickness_m"])):
+    for mesh in _meshes(recording, run):
         stream.set_time(TIMELINE, duration=mesh.t_ns / NS)
         stream.log(f"world/{mesh.name}", _mesh(mesh), static=mesh.name == "structure")
     stream.flush()
 
 
+def _meshes(recording: Path, run: RunData) -> Iterator[pictures.Mesh]:
+    stored = messages(recording, pictures.TOPICS)
+    try:
+        yield from pictures.meshes(stored, float(run.metadata["thickness_m"]))
+    except (DecodeError, ValueError, IndexError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(
+            f"{recording}: a picture in it cannot be read: {error}; give a file that `cosim run` wrote"
+        ) from None
+
+
 def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
     # curves are drawn in the order of their paths: the total first, so that it hides no phase
     series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
+    run = run.lasting
+    scale = load_scale(run)
     index = rr.TimeColumn(TIMELINE, duration=run.t)
     for axis in ("fx", "fz"):
         for key, name, phase, rgb in series:
             path = f"load/{axis}/{key}"
             width = 3.5 if phase is None else 1.6
-            stream.log(path, rr.SeriesLines(names=name, colors=rgb, widths=width), static=True)
-            values = rr.Scalars.columns(scalars=run.component(axis, phase) * 1e-6)
+            # no aggregation: the viewer would draw means over what falls on one pixel, and the peak would be lower
+            line = rr.SeriesLines(names=name, colors=rgb, widths=width, aggregation_policy=AggregationPolicy.Off)
+            stream.log(path, line, static=True)
+            values = rr.Scalars.columns(scalars=run.component(axis, phase) / scale.size)
             stream.send_columns(path, indexes=[index], columns=values)
 
 

@@ -1,68 +1,66 @@
-"""One HTML page of a recorded run: loads by phase, balances, events, and the numbers beside the reference.
-
-Needs the extra ``report`` (matplotlib, jinja2).
-"""
+"""One HTML page of a recorded run: loads by phase, balances, events, and the numbers beside the reference."""
 
 from __future__ import annotations
 
-import base64
-import io
-from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import jinja2
 
 from cosim.analysis import budget
 from cosim.analysis.compare import compare, reference_of
-from cosim.analysis.peaks import shares_at_peak, summary
+from cosim.analysis.lights import trust, trust_lines
+from cosim.analysis.peaks import shares_at_peak
 from cosim.analysis.run_data import RunData
+from cosim.analysis.summary import summary
 from cosim.baselines.beside import beside
-from cosim.errors import FailedError
-from cosim.show.baseline_cells import BESIDE, beside_rows, remarks
-from cosim.show.cells import compare_cells
+from cosim.series.compare import Comparison
+from cosim.show.baseline_cells import beside_table, remarks
+from cosim.show.cells import COMPARED, compare_cells, over_text
 from cosim.show.figures import FIGURES, has_data
+from cosim.show.png import picture
+from cosim.show.scale import scale_of
+from cosim.show.series_tables import page_parts
 from coupling.interface import NS
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def write_report(run: RunData, out: Path) -> None:
-    """Writes the page; pictures are inside it."""
-    try:
-        import jinja2
-        import matplotlib
-    except ImportError as error:
-        text = f"{error.name} is missing: install the extra, for example `uv sync --extra report`"
-        raise FailedError(text) from error
-    matplotlib.use("Agg")
+def write_report(run: RunData, out: Path, series: Comparison | None = None) -> None:
+    """Writes the page, also of a measured series beside the run; pictures are inside it."""
     template = files("cosim.show").joinpath("report.html.j2").read_text("utf-8")
     page = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined).from_string(template)
-    out.write_text(page.render(content(run)), "utf-8")
+    out.write_text(page.render(content(run, series)), "utf-8")
 
 
-def content(run: RunData) -> dict[str, Any]:
+def content(run: RunData, series: Comparison | None = None) -> dict[str, Any]:
     """What the page shows, ready for its template."""
     design = beside(run)
+    head, design_rows = beside_table(design)
+    shares = shares_at_peak(run)
     figures = [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)]
     return {
         "summary": summary(run),
+        "trust": trust_lines(trust(run)),
+        "over": over_text(run.averaging),
+        "loads": scale_of((row["value"] for row in shares.values()), "N"),
+        "compared": COMPARED,
         "rows": _rows(run),
         "figures": figures,
-        "shares": shares_at_peak(run),
+        "shares": shares,
+        "series": [] if series is None else page_parts(series),
         "budget": budget.rows(run),
         "bound": budget.largest_residual(run),
-        "design": {"head": BESIDE, "rows": beside_rows(design), "remarks": remarks(design)},
+        "design": {"head": head, "rows": design_rows, "remarks": remarks(design)},
         "events": [
             {
                 "time": e.t_ns / NS,
                 "kind": e.kind,
-                "fx": e.force[0] / 1e6,
-                "fz": e.force[2] / 1e6,
+                "fx": e.force[0],
+                "fz": e.force[2],
                 "cells": e.cells,
                 "text": e.text,
             }
-            for e in run.events
+            for e in run.lasting.events
         ],
         "metadata": dict(run.metadata),
         "scenario": run.texts.get("scenario.toml", ""),
@@ -75,14 +73,3 @@ def _rows(run: RunData) -> list[tuple[str, ...]]:
         return []
     _, reference = reference_of(run, None)
     return [(*compare_cells(row), row.feature.source) for row in compare(run, reference)]
-
-
-def picture(title: str, draw: Callable[[Figure, RunData], None], run: RunData) -> dict[str, str]:
-    """A figure as PNG for an HTML page."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9.0, 4.2), layout="constrained")
-    draw(figure, run)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=130)
-    return {"title": title, "png": base64.b64encode(buffer.getvalue()).decode()}

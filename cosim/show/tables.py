@@ -1,111 +1,135 @@
-"""Tables of the terminal: end of a run, recordings, comparison, scenarios."""
+"""Tables of the terminal: end of a run, recordings, comparison."""
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
-from rich.table import Table
-from rich.text import Text
-
 from cosim.analysis.compare import Row
-from cosim.show.cells import compare_cells, number
-from cosim.show.console import new_table, stdout
+from cosim.analysis.lights import trust_lines
+from cosim.show.cells import COMPARED, compare_cells, over_text
+from cosim.show.console import PlainTable, new_table, print_line, stdout
+from cosim.show.scale import Scale, scale_of, seconds
 from coupling.energy import LOAD_WORK, STORES
 from coupling.interface import PHASES
 
-
-def run_tables(result: dict[str, Any]) -> list[Table]:
-    """End of a run: peaks by phase, and the events."""
-    peaks = new_table("load", "Fx [MN]", "at [s]", "Fz [MN]", "at [s]", "F [MN]", "at [s]", title="Peaks")
-    for name, values in [("total", result["peaks"]), *((p, result["peaks_by_phase"][p]) for p in PHASES)]:
-        cells = [
-            number(values[key][what], scale)
-            for key in ("fx", "fz", "f")
-            for what, scale in (("value", 1e-6), ("time", 1.0))
-        ]
-        peaks.add_row(name, *cells)
-    tables = [peaks]
-    if result["events"]:
-        tables.append(events_table(result["events"]))
-    return tables
+COMPONENTS = ("fx", "fz", "f")
 
 
-def events_table(events: list[dict[str, Any]], most: int = 25) -> Table:
-    """Events with the load at their time; a long list ends with how many are left out."""
-    table = new_table("at [s]", "event", "Fx [MN]", "Fz [MN]", "cells", title="Events")
-    for e in events[:most]:
-        table.add_row(number(e["time"], 1.0), e["kind"], number(e["fx"], 1e-6), number(e["fz"], 1e-6), str(e["cells"]))
-    if len(events) > most:
-        table.add_row("", f"... {len(events) - most} more", "", "", "")
+def peaks_table(result: dict[str, Any]) -> PlainTable:
+    """Peaks of all phases and of each, with the time over which they are means."""
+    rows = [("total", result["peaks"]), *((p, result["peaks_by_phase"][p]) for p in PHASES)]
+    loads = scale_of((values[key]["value"] for _, values in rows for key in COMPONENTS), "N")
+    times = seconds(values[key]["time"] for _, values in rows for key in COMPONENTS)
+    heads = [head for name in ("Fx", "Fz", "F") for head in (f"{name} [{loads.unit}]", "at [s]")]
+    title = f"Peaks of the mean load over {over_text(result['averaging_s'])}"
+    table = new_table("load", *heads, title=title)
+    for name, values in rows:
+        cells = []
+        for key in COMPONENTS:
+            value = values[key]["value"]
+            cells += [loads.text(value), times.text(values[key]["time"] if value else None)]
+        table.add_row(name, *cells)
     return table
 
 
-def compare_table(title: str, rows: list[Row]) -> Table:
-    """Simulated beside computed and measured."""
-    table = new_table("feature", "simulated", "thesis", "ratio", "measured", "ratio", "unit", title=title)
-    for row in rows:
-        table.add_row(*compare_cells(row))
+def events_table(events: list[dict[str, Any]], averaging: float) -> PlainTable:
+    """All events with the load at their time."""
+    loads = scale_of((e[key] for e in events for key in ("fx", "fz")), "N")
+    times = Scale(1.0, "s", 3)
+    heads = ("at [s]", "event", f"Fx [{loads.unit}]", f"Fz [{loads.unit}]", "cells", "cause")
+    table = new_table(*heads, title=f"Events, loads as means over {over_text(averaging)}")
+    for e in events:
+        cells = (times.text(e["time"]), e["kind"], loads.text(e["fx"]), loads.text(e["fz"]), str(e["cells"]))
+        table.add_row(*cells, e.get("cause", ""))
     return table
 
 
-def ledger_lines(ledger: dict[str, float | None]) -> list[str]:
-    """Errors and masses of a run, and the energy terms that are at least 1 % of the work of the drift."""
+def events_line(events: list[dict[str, Any]]) -> str:
+    """How many events of each kind there were, and when the first one was."""
+    if not events:
+        return "events: none, no cell has failed"
+    count = Counter(e["kind"] for e in events)
+    first = {e["kind"]: e["time"] for e in reversed(events)}
+    return "events: " + ", ".join(f"{n} {kind} (from {first[kind]:.2f} s)" for kind, n in count.items())
+
+
+def ledger_lines(ledger: dict[str, float | None], full: bool = False) -> list[str]:
+    """Largest error of a run's balances, and the energy terms of at least 5 % of the work of the drift; or all."""
     known = {name: value for name, value in ledger.items() if value is not None}
-    errors = [f"{name} {value:.2g}" for name, value in known.items() if name.endswith(("_error", "residual", "_mass"))]
-    least = 0.01 * abs(known.get("drift_work", 0.0))
+    kinds = ("_error", "residual", "_mass") if full else ("_error", "residual")
+    errors = [f"{name} {value:.2g}" for name, value in known.items() if name.endswith(kinds)]
+    lines = ["ledger: " + ", ".join(errors)]
+    if "drift_work" not in known:
+        return lines
+    work = known["drift_work"]
+    least = 0.0 if full else 0.05 * abs(work)
     terms = [
         (name, value)
         for name, value in known.items()
-        if (name in STORES or name.endswith(("_loss", LOAD_WORK))) and abs(value) >= max(least, 1.0)
+        if (name in STORES or name.endswith(("_loss", LOAD_WORK))) and abs(value) > least
     ]
-    lines = ["ledger: " + ", ".join(errors)]
-    if "drift_work" in known:
-        terms.sort(key=lambda term: -abs(term[1]))
-        went = ", ".join(f"{name.removesuffix('_loss')} {value / 1e6:.2f}" for name, value in terms)
-        lines.append(f"energy [MJ]: work of the drift {known['drift_work'] / 1e6:.2f}; {went}")
-    return lines
+    scale = scale_of([work, *(value for _, value in terms)], "J")
+    terms.sort(key=lambda term: -abs(term[1]))
+    went = ", ".join(f"{name.removesuffix('_loss')} {scale.text(value)}" for name, value in terms)
+    return [*lines, f"energy [{scale.unit}]: work of the drift {scale.text(work)}; {went}"]
 
 
-def print_run(result: dict[str, Any]) -> None:
-    """End of `cosim run`."""
-    for table in run_tables(result):
-        stdout.print(table)
-    ledger = "\n".join(ledger_lines(result["ledger"]))
-    stdout.print(
+def print_run(result: dict[str, Any], detail: int = 0) -> None:
+    """End of `cosim run` on one screen; with more ``detail`` also all events and the whole ledger, with less a line."""
+    if detail < 0:
+        for line in result_lines(result):
+            print_line(line)
+        return
+    stdout.print(peaks_table(result))
+    print_line(
         f"{result['simulated_s']:g} s simulated in {result['wall_s']:.1f} s "
-        f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, "
-        f"{result['blocks']} blocks\n{ledger}",
-        highlight=False,
+        f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, {result['blocks']} blocks"
     )
+    if detail > 0 and result["events"]:
+        stdout.print(events_table(result["events"], result["averaging_s"]))
+    print_line(events_line(result["events"]))
+    for line in (*trust_lines(result["trust"]), *ledger_lines(result["ledger"], full=detail > 0)):
+        print_line(line)
     if result["recording"]:
-        stdout.print(f"recording: {result['recording']}", highlight=False, soft_wrap=True)
+        print_line(f"recording: {result['recording']}")
 
 
-def print_info(content: dict[str, Any]) -> None:
-    """`cosim info`."""
-    stdout.print(
-        f"{content['title']} ({content['scenario']}), version {content['version']}, seed {content['seed']}\n"
+def result_lines(result: dict[str, Any]) -> list[str]:
+    """The peaks of the whole load in a line, and what speaks against them in another."""
+    loads = scale_of((result["peaks"][key]["value"] for key in COMPONENTS), "N")
+    parts = [
+        f"{name} {loads.labelled(result['peaks'][key]['value'])} at {result['peaks'][key]['time']:.2f} s"
+        for key, name in (("fx", "Fx"), ("fz", "Fz"))
+    ]
+    line = f"peaks, means over {over_text(result['averaging_s'])}: {', '.join(parts)}"
+    return [line] if result["trust"]["trustworthy"] else [line, trust_lines(result["trust"])[-1]]
+
+
+def print_info(content: dict[str, Any], events: bool = False) -> None:
+    """`cosim info`; with all ``events`` or with their number."""
+    print_line(f"{content['title']} ({content['scenario']}), version {content['version']}, seed {content['seed']}")
+    print_line(
         f"{content['simulated_s']:g} of {content['duration_s']:g} s, {content['windows']} windows, "
-        f"overrides: {' '.join(content['overrides']) or 'none'}",
-        highlight=False,
-        soft_wrap=True,
-        markup=False,
+        f"overrides: {' '.join(content['overrides']) or 'none'}"
     )
-    for table in run_tables(content):
-        stdout.print(table)
+    stdout.print(peaks_table(content))
+    for line in trust_lines(content["trust"]):
+        print_line(line)
+    if events and content["events"]:
+        stdout.print(events_table(content["events"], content["averaging_s"]))
+        return
+    more = "; `cosim info --events` lists them" if content["events"] else ""
+    print_line(events_line(content["events"]) + more)
 
 
-def print_compare(title: str, rows: list[Row]) -> None:
-    """`cosim compare`: the table, then where the numbers are from."""
-    stdout.print(compare_table(title, rows))
+def print_compare(title: str, rows: list[Row], trust: dict[str, Any]) -> None:
+    """`cosim compare`: simulated beside computed and measured, then where the numbers are from."""
+    table = new_table(*COMPARED, title=title)
     for row in rows:
-        stdout.print(f"{row.feature.name}: {row.feature.source}", highlight=False, markup=False, soft_wrap=True)
-
-
-def print_scenarios(rows: list[dict[str, Any]]) -> None:
-    """`cosim list`."""
-    table = new_table("scenario", "event", "s", title="Scenarios")
-    table.columns[1].header = Text("what")
-    for row in rows:
-        table.add_row(row["name"], row["title"], f"{row['duration_s']:g}")
+        table.add_row(*compare_cells(row))
     stdout.print(table)
+    for line in trust_lines(trust):
+        print_line(line)
+    for row in rows:
+        print_line(f"{row.feature.name}: {row.feature.source}")

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
-from rich.text import Text
 
+from cosim.scenario.finding import locate
 from cosim.scenario.loading import load_scenario
-from cosim.show.console import print_line, stderr, stdout, warn
-from cosim.study.sweep import COMPONENTS, RESULTS, Row, sweep
-from cosim.study.variants import Variant, parse_axis, variants
+from cosim.show.cells import over_text
+from cosim.show.check import fact_lines, judged
+from cosim.show.console import as_line, new_table, print_line, stderr, stdout
+from cosim.show.scale import scale_of
+from cosim.show.talk import QUIET, Talk
+from cosim.signals import StoppedError
+from cosim.study.sweep import Row, sweep
+from cosim.study.table import Table
+from cosim.study.variants import parse_axis, variants
 
 COLUMNS = (
     "variant",
@@ -33,71 +35,81 @@ COLUMNS = (
 )
 
 
-def run_sweep(scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int) -> dict[str, Any]:
-    """All variants with a progress bar; the content of ``--json``."""
+def run_sweep(
+    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: Table, talk: Talk
+) -> dict[str, Any]:
+    """All variants with a progress bar, written to ``table`` as they end; the content of ``--json``.
+
+    If it is stopped, what has ended until then is shown.
+    """
     axes = [parse_axis(text) for text in vary]
-    base = load_scenario(scenario, overrides)
+    file = locate(scenario).resolve()  # once: every process reads the same file
+    base = load_scenario(file, overrides)
     for text in base.warnings:
-        warn(text)
+        talk.warn(text)
+    for line in fact_lines(judged(base)["facts"]):
+        talk.detail(line)
+    keys = [axis.key for axis in axes]
+    content = {"scenario": base.title, "overrides": list(overrides), "keys": keys, "grid": grid}
     chosen = variants(axes, grid)
+    rows: list[Row] = []
+    try:
+        with _progress(talk) as progress:
+            task = progress.add_task(as_line(base.title)[:30], total=len(chosen))
+
+            def done(row: Row, ended: list[Row]) -> None:
+                progress.advance(task)
+                talk.note(f"{row['variant']}: {row['error'] or _in_a_line(row)}")
+                rows[:] = ended
+                table.write(keys, ended)
+
+            sweep(str(file), overrides, chosen, workers, done)
+    except StoppedError:
+        if rows:
+            show({**content, "variants": rows})
+        raise
+    return {**content, "failed": sum(row["error"] is not None for row in rows), "variants": rows}
+
+
+def _progress(talk: Talk) -> Progress:
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("variants, remaining"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=stderr, transient=True) as progress:
-        task = progress.add_task(base.title, total=len(chosen))
-
-        def done(variant: Variant, row: Row) -> None:
-            progress.advance(task)
-            what = row.get("error") or f"Fx {row['fx_peak'] / 1e6:.2f} MN, Fz {row['fz_peak'] / 1e6:.2f} MN"
-            progress.console.print(f"{variant.name}: {what}", highlight=False, markup=False, soft_wrap=True)
-
-        rows = sweep(scenario, overrides, chosen, workers, done)
-    return {
-        "scenario": base.title,
-        "overrides": list(overrides),
-        "keys": [axis.key for axis in axes],
-        "grid": grid,
-        "failed": sum(row["error"] is not None for row in rows),
-        "variants": rows,
-    }
-
-
-def write_csv(content: dict[str, Any], out: Path) -> None:
-    """One line for each variant: name, varied keys (empty: as in the base), results in SI units, ratios, error."""
-    names = ["variant", *content["keys"], *RESULTS, *(f"{c}_ratio" for c in COMPONENTS), "error"]
-    with out.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, names, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(content["variants"])
+    return Progress(*columns, console=stderr, transient=True, disable=talk.level == QUIET)
 
 
 def show(content: dict[str, Any]) -> None:
     """The table for people."""
-    title = f"{content['scenario']}: peaks of 0.5 s means [MN], ratio to the base, largest Fx of each phase"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left", padding=(0, 0, 0, 1))
-    for k, name in enumerate(COLUMNS):
-        table.add_column(Text(name), justify="right" if k else "left", min_width=0 if k else 28)
+    ran = [row for row in content["variants"] if row["error"] is None]
+    scale = scale_of((row[name] for row in ran for name in ("fx_peak", "fz_peak")), "N")
+    over = " or ".join(dict.fromkeys(over_text(row["averaging_s"]) for row in ran))
+    title = f"{content['scenario']}: peaks of means over {over} [{scale.unit}], ratio to the base, largest Fx of phases"
+    table = new_table(*COLUMNS, title=title)
+    table.columns[0].min_width = 28
     for row in content["variants"]:
         if row["error"] is not None:
-            table.add_row(row["variant"], "failed", *[""] * 10)
+            table.add_row(row["variant"], "failed", *[""] * (len(COLUMNS) - 1))
             continue
-        phases = [_mega(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
-        load = [(_mega(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")]
-        table.add_row(row["variant"], *load[0], *load[1], *phases, _mega(row["fx_mean"]), f"{row['wall_s']:.1f}")
+        phases = [scale.text(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
+        load = [
+            (scale.text(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")
+        ]
+        table.add_row(row["variant"], *load[0], *load[1], *phases, scale.text(row["fx_mean"]), f"{row['wall_s']:.1f}")
     stdout.print(table)
     for row in content["variants"]:
         if row["error"] is not None:
             print_line(f"failed: {row['variant']}: {row['error']}")
-        elif max(row["fx_time"], row["fz_time"]) >= row["simulated_s"]:
-            print_line(f"largest load at the end: {row['variant']}: it may still grow; give a longer scenario.duration")
+        elif row["not_trustworthy"]:
+            print_line(f"not trustworthy: {row['variant']}: because {row['not_trustworthy']}")
 
 
-def _mega(value: float) -> str:
-    return f"{value / 1e6:.2f}"
+def _in_a_line(row: Row) -> str:
+    scale = scale_of((row["fx_peak"], row["fz_peak"]), "N")
+    return f"Fx {scale.labelled(row['fx_peak'])}, Fz {scale.labelled(row['fz_peak'])}"
 
 
 def _ratio(value: float | None) -> str:

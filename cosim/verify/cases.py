@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any
 
 from cosim.nearest import hint
+from cosim.outputs import whole, writable
 from cosim.verify import (
     cantilever,
     cone,
@@ -34,7 +35,18 @@ from cosim.verify import (
     wedge,
 )
 from cosim.verify.case import CaseResult
-from cosim.verify.cracks import arch, beam_test, centre_crack, friction, hinged_ring, thrust, wedge_beams
+from cosim.verify.cracks import (
+    arch,
+    beam_test,
+    centre_crack,
+    cone_breaking,
+    first_encounter,
+    friction,
+    hinged_ring,
+    pressed_edge,
+    thrust,
+    wedge_beams,
+)
 from cosim.verify.settings import merged, parse
 
 CASES: dict[str, ModuleType] = {
@@ -64,6 +76,9 @@ CASES: dict[str, ModuleType] = {
     "wedge-beams": wedge_beams,
     "hinged-ring": hinged_ring,
     "centre-crack": centre_crack,
+    "pressed-edge": pressed_edge,
+    "cone-breaking": cone_breaking,
+    "first-encounter": first_encounter,
 }
 
 
@@ -83,6 +98,8 @@ def run(
         raise ValueError("--set needs a case: parameters belong to one case")
     if case is not None and case not in CASES:
         raise ValueError(f"unknown case {case!r}; {hint(case, CASES)}")
+    if plots_dir is not None:
+        Path(plots_dir).mkdir(parents=True, exist_ok=True)
     results = []
     for name in CASES if case is None else [case]:
         module, began = CASES[name], time.perf_counter()
@@ -95,7 +112,7 @@ def run(
 
 def save_figures(result: CaseResult, folder: Path) -> list[Path]:
     """Draw the figures of a result as ``<case>_<figure>.png``."""
-    from matplotlib.figure import Figure as Sheet  # slow to import, not installed everywhere
+    from matplotlib.figure import Figure as Sheet  # slow to import
 
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
@@ -104,5 +121,6 @@ def save_figures(result: CaseResult, folder: Path) -> list[Path]:
         figure.draw(sheet)
         sheet.suptitle(figure.title)
         paths.append(folder / f"{result.case}_{figure.name}.png")
-        sheet.savefig(paths[-1], dpi=110)
+        with whole(writable(paths[-1], ".png"), ".png") as part:
+            sheet.savefig(part, dpi=110)
     return paths

@@ -53,6 +53,7 @@ class Fragment:
     velocity: Array  #: (n, 3) [m/s]
     tilt: Array  #: (n,) rotation of the node about +y (lifts the rear and lowers the front edge when > 0) [rad]
     tilt_rate: Array  #: (n,) [rad/s]
+    flooded: Array  #: (n,) part of the head of water above it that the top of the node's ice carries, 0-1
     cut: Array  #: (n,) how far the face that touches is crushed back, from the front of the node's ice [m]
     cut_tan: Array  #: (n,) steepness of the cut: depth below the touching face over distance along x
     cut_face: float  #: +1 if the upper edge of the ice was crushed (downward-breaking structure), -1 the lower

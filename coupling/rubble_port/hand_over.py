@@ -43,16 +43,30 @@ class Arrivals:
         rest = [(trimmed, b) for b in whole if (trimmed := self._trim(layer, b, origin, axes)) is not None]
         if not rest:
             return HandOver(0, mass, mass, error[0], error[1])
-        number = self._put(layer, [prism_at(t, b.y, b.width, density) for t, b in rest], start, plate.position)
+        prisms = [prism_at(t, b.y, b.width, density) for t, b in rest]
+        number = self._put(layer, prisms, start, plate.position, self._head(fragment))
         born = layer.block(number)
         self.born += layer.runner.parts_of(born)
         return HandOver(1, mass, mass - born.mass, error[0], error[1])
 
-    def _put(self, layer: RubbleLayer, prisms: list[tuple[Prism, Array]], start: Start, centre: Array) -> int:
+    def _put(
+        self,
+        layer: RubbleLayer,
+        prisms: list[tuple[Prism, Array]],
+        start: Start,
+        centre: Array,
+        head: float | None,
+    ) -> int:
         """What is left of a plate moves on as the part of a rigid body that it is."""
         kept = layer.try_plate(prisms, start).position
         start = replace(start, velocity=start.velocity + np.cross(start.omega, kept - centre))
-        return layer.add_plate(prisms, start, fragment=self.fragments - 1)
+        return layer.add_plate(prisms, start, fragment=self.fragments - 1, flooded=head)
+
+    def _head(self, f: Fragment) -> float | None:
+        """Part of the head of water on its top; None where tops do not fill: as `RubblePhysics.backfill` has it."""
+        if self._physics.filling_rate <= 0.0:
+            return None
+        return float(np.average(f.flooded, weights=f.length * f.width))
 
     def _trim(self, layer: RubbleLayer, b: PieceBirth, origin: Array, axes: Array) -> Array | None:
         """What is left of a piece outside the structure, seen in the section that it stands in; None: nothing."""

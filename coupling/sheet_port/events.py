@@ -29,6 +29,11 @@ def event(
     return Event(t_ns, kind, force, failed.cells, place, text, *size, failed.cause)
 
 
+def told(value: float) -> str:
+    """A number for people, with three digits at any scale of the case."""
+    return f"{float(f'{value:.3g}'):.12g}"
+
+
 def failures(t_ns: int, load: Array, failed: Failed, where: Array, parts: int | None, quiet: bool) -> list[Event]:
     """Cells have failed about ``where``, after a quiet window or not; ``parts`` if there are more of them now."""
     events = []
@@ -42,13 +47,13 @@ def failures(t_ns: int, load: Array, failed: Failed, where: Array, parts: int | 
 
 def crack(t_ns: int, load: Array, where: Array, length: float) -> Event:
     """Cracks of this length [m] in all have passed the middle of the ice."""
-    text = f"cracks of {length:.0f} m have passed the middle of the ice: they are hinges under thrust"
+    text = f"cracks of {told(length)} m have passed the middle of the ice: they are hinges under thrust"
     return event(t_ns, "crack", load, NONE, where, text, (length, 0.0))
 
 
 def hinge(t_ns: int, load: Array, where: Array, area: float) -> Event:
     """Pieces of this area [m2] in all are surrounded by cracks."""
-    text = f"{area:.0f} m2 are surrounded by cracks and held by what presses them"
+    text = f"{told(area)} m2 are surrounded by cracks and held by what presses them"
     return event(t_ns, "hinge", load, NONE, where, text, (0.0, area))
 
 
@@ -62,22 +67,22 @@ def departure(t_ns: int, load: Array, failed: Failed, f: Fragment, at_structure:
     where = np.average(f.position, axis=0, weights=f.length * f.width)
     length = max(float(f.length[f.column == c].sum()) for c in np.unique(f.column))
     area = float((f.length * f.width).sum())
-    text = f"a piece of {area:.0f} m2, {f.mass.sum() / 1e3:.0f} t"
+    text = f"a piece of {told(area)} m2, {told(f.mass.sum())} kg"
     events = []
     if at_structure:
-        what = f"{text}, breaks off in front of the structure ({length:.1f} m along the drift)"
+        what = f"{text}, breaks off in front of the structure ({told(length)} m along the drift)"
         events.append(event(t_ns, "circumferential", load, failed, where, what, (length, area)))
     return [*events, event(t_ns, "hand_over", load, failed, where, f"{text}, becomes rubble", (length, area))]
 
 
-def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float) -> Event:
+def lifted_out(t_ns: int, load: Array, where: Array, lift: float, draft: float, linear: bool) -> Event:
     """Where the lattice's foundation ends.
 
     It pulls lifted ice down with rho_w g w, the missing buoyancy. That is right until the underside leaves the water at
-    w = draft; beyond, it pulls too much.
+    w = draft; beyond, it pulls too much if it is ``linear`` without end.
     """
-    text = (
-        f"the sheet is lifted by {lift:.2f} m, more than its draft of {draft:.2f} m: "
-        "from here on the linear foundation pulls it down with more than its weight"
+    pull = (
+        "the linear foundation pulls it down with more than its weight" if linear else "only its weight pulls it down"
     )
+    text = f"the sheet is lifted by {told(lift)} m, more than its draft of {told(draft)} m: from here on {pull}"
     return event(t_ns, "out_of_water", load, NONE, where, text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coupling.interface import Fragment, IntArray
+from coupling.interface import Array, Fragment, IntArray
 from coupling.sheet_port.front import Front
 from coupling.sheet_port.motion import Motion
 from lattice.floe import Floe
@@ -27,7 +27,13 @@ def fragment(sheet: Floe, motion: Motion, front: Front, nodes: IntArray) -> Frag
         velocity=motion.velocities(nodes),
         tilt=s.q[nodes, 1].copy(),
         tilt_rate=s.q_dot[nodes, 1].copy(),
+        flooded=_flooded(sheet, nodes),
         cut=edge.cut(row, column),
         cut_tan=edge.tan[column],
         cut_face=front.contact.face,
     )
+
+
+def _flooded(sheet: Floe, nodes: IntArray) -> Array:
+    """Part of the head that the tops of nodes carry, (n,)."""
+    return np.zeros(len(nodes)) if sheet.tops is None else sheet.tops.flooded[nodes]

@@ -73,4 +73,5 @@ class Watch:
             return []
         self._afloat = False
         where = self._motion.position(np.array([highest]))[0]
-        return [events.lifted_out(round(self._motion.t * NS), load, where, float(w[highest]), self.draft)]
+        linear = self._sheet.tops is None
+        return [events.lifted_out(round(self._motion.t * NS), load, where, float(w[highest]), self.draft, linear)]

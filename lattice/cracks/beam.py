@@ -14,17 +14,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lattice.cracks.begin import face_stresses
 from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, law_of
-from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.forces import NOTHING, indenter
 from lattice.explicit.layout import W
 from lattice.grid import BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.properties import beam_strength
 from lattice.state import State
 from lattice.stiffness import hrennikoff
-from lattice.strain import CellState
 
 SPAN, WIDTH = 6.0, 2.0  #: length and width of a beam in thicknesses where no test is given: those of the basin's beam
 FEWEST = 2  #: cells over the width of the beam, however large the sheet's are
@@ -100,21 +98,17 @@ class BeamTest:
     def strength(self) -> float:
         """Nominal strength at the largest force, 6 F a / (w h^2) with the arm a of `CutBeam` [Pa]."""
         e, tip, block = self.engine, self.cut.tip, 8
-        everything, row, column = np.ones(self.cut.grid.nodes, bool), *np.divmod(tip, self.cut.grid.ny)
+        everything = np.ones(self.cut.grid.nodes, bool)
         e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), everything)
         e.start(State.rest(self.cut.grid.nodes), everything, ())
         spring = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2  # soft for the sub-step, stiff against the beam
-        tangent = np.zeros((len(tip), 3, 3))
-        tangent[:, W, W] = -spring
-        at_node, none, largest, mean, t = np.zeros(len(tip)), np.zeros((len(tip), 3)), 0.0, 0.0, 0.0
-        at = np.zeros((len(tip), 3))
-        touch = Touch(row, column, at_node, at_node, at, none, tangent)
+        touch, largest, mean, t = indenter(tip, self.cut.grid.ny, spring), 0.0, 0.0, 0.0
         while t < 8.0 * e.window:
-            at[:, W] = -self.speed * (t + 0.5 * block * e.dt)
+            touch.at[:, W] = -self.speed * (t + 0.5 * block * e.dt)
             made = e.march(block, NOTHING, touch, lively=False)
             t += made.steps * e.dt
             if made.failed:
-                self._begin()
+                e.crack(self.live)
             mean += 0.05 * (-float(made.contact[:, W].sum()) - mean)  # over the tremor of the tip
             largest = max(largest, mean)
             if mean < FALL * largest and t > 0.1 * e.window:
@@ -123,14 +117,6 @@ class BeamTest:
         raise ValueError(
             f"the simulated beam did not break after {t:.0f} s: a fracture energy of this size lets it bend"
         )
-
-    def _begin(self) -> None:
-        e, (u, q) = self.engine, self.engine.displacement()
-        stress, angle = face_stresses(CellState.of(self.cut.grid, u, q), self.ice)
-        for cell in np.flatnonzero(self.live & (stress >= self.ice.sigma_t)):
-            e.begin(int(cell), float(angle[cell]))
-            self.live[cell] = False
-        e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), np.ones(self.cut.grid.nodes, bool))
 
 
 def layer_strength(ice: Ice, mu: float, fracture_energy: float, beam: Beam, d: float) -> float:

@@ -42,8 +42,8 @@ HOURGLASS = 0.05  #: stiffness of the modes without mean strain, as share of E h
 NN, NT, TT, GG = range(4)  #: entries of a tangent
 N_N, N_T, N_G, M_N, M_T, M_G = range(6)  #: resultants across the crack, along it and shear
 E_X, E_Y, G_XY, K_X, K_Y, K_XY = range(6)  #: strains in the axes of the sheet
-LOSSES = ("cracking", "crushing", "rubbing", "switching")
-CRACKING, CRUSHING, RUBBING, SWITCHING = range(4)  #: entries of ``Cracks.losses``
+LOSSES = ("cracking", "crushing", "rubbing", "switching", "turning")
+CRACKING, CRUSHING, RUBBING, SWITCHING, TURNING = range(5)  #: entries of ``Cracks.losses``
 
 
 class Plate(NamedTuple):
@@ -75,7 +75,7 @@ class Cracks(NamedTuple):
     seen: Array  #: (6, m) `E_X` ... at the last evaluation
     constant: Array  #: (m,) energy by which the tangent's differs from what is stored [J]
     force: Array  #: (4, 5, m) on nodes 0 to 3 in the present sub-step [N], [N m]
-    losses: Array  #: (4,) `CRACKING` ...: sums over all cells [J]
+    losses: Array  #: (5,) `CRACKING` ...: sums over all cells [J]
 
 
 def room_for(m: int) -> Cracks:

@@ -5,20 +5,25 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from lattice.cracks.begin import face_stresses
 from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
 from lattice.cracks.law import CrackLaw
+from lattice.cracks.lean import book_pull, gather_lean, lean_energy, lean_on
 from lattice.cracks.march import Stretch, march_cracked
-from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give
+from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give, hourglass_energy, pull_on_held
 from lattice.cracks.state import LayeredCells
+from lattice.explicit import layout
 from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine, SubSteps
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
-from lattice.explicit.layout import U_X, Motion
+from lattice.explicit.layout import Motion
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
+from lattice.strain import CellState
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
 #: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
@@ -33,11 +38,13 @@ class CrackingEngine(ExplicitEngine):
     """Leapfrog of a lattice with layered cells, which are none of its springs."""
 
     _written = (*ExplicitEngine._written, "layered")
+    slopes = True  #: strain the middle plane; False: rotations are small
 
     def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
         """As `ExplicitEngine`, with the ``law`` of the cracks."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        self.layered = LayeredCells(law, plate)
+        self.layered = LayeredCells(law, plate, layout.motion(grid).y[0].size)
+        self.layered.leans = self.slopes
         self.slow = options.get("sub_steps", TRUE_INERTIA).scaling > 1.0
         super().__init__(grid, ice, springs, window, **options)
 
@@ -51,6 +58,37 @@ class CrackingEngine(ExplicitEngine):
             self.alpha = min(asked, SLOW_DAMPING * super()._critical_step())
         return super()._critical_step()
 
+    def set_cells(self, live: BoolArray, limits: Array, present: BoolArray) -> None:
+        """As `ExplicitEngine`; of cells that are gone the slope does nothing any more."""
+        super().set_cells(live, limits, present)
+        lean, carries = self.layered.lean, self._at_cells(live)
+        lean.stress[:] *= carries
+        carries[self.layered.corner] = 1.0
+        lean.pull[:] *= carries
+        gather_lean(self.motion.y.shape[2], self.layered.view())
+
+    def _at_cells(self, values: NDArray[Any]) -> Array:
+        """Values (cells,) at the places of their nodes 0, (places,)."""
+        padded, g = np.zeros_like(self.motion.y[0]), self.grid
+        padded[: g.nx - 1, : g.ny - 1] = values.reshape(g.nx - 1, g.ny - 1)
+        flat: Array = padded.reshape(-1)
+        return flat
+
+    def _nodes(self) -> Nodes:
+        y, v = (a.reshape(5, -1) for a in self.motion)
+        x, way = (a.reshape(5, -1) for a in (self.mesh.scratch.before, self.mesh.scratch.after))
+        return Nodes(y, v, x, way, self.motion.y.shape[2], self.alpha, self.dt)
+
+    def book_pull(self, time: float) -> None:
+        """Books the work of slopes at the present velocity for a time [s]."""
+        book_pull(time, self.motion.v.reshape(5, -1), self.layered.view())
+
+    def hold(self) -> float:
+        """As `ExplicitEngine.hold`, from layered cells and slopes as well."""
+        layered, y = self.layered.view(), self.motion.y
+        crack_forces(y.shape[2], y.reshape(5, -1), 1.0, layered)
+        return super().hold() + float(pull_on_held(y.shape[2], self.mesh.held.reshape(-1), layered))
+
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""
         stretch, layered = Stretch(steps, stride), self.layered.view()
@@ -58,15 +96,21 @@ class CrackingEngine(ExplicitEngine):
         return made
 
     def begin(self, cell: int, angle: float) -> float:
-        """A cell becomes layered as it is now; returns the energy that its layers store [J]."""
-        y, v = (a.reshape(5, -1) for a in self.motion)
-        k = self.layered.add(cell, self._corner(cell), angle)
-        room, layered = self.mesh.scratch, self.layered.view()
-        x, way = room.before.reshape(5, -1), room.after.reshape(5, -1)
-        nodes = Nodes(y, v, x, way, self.motion.y.shape[2], self.alpha, self.dt)
+        """A cell becomes layered as it is now; returns the energy that it then stores [J]."""
+        k, nodes = self.layered.add(cell, self._corner(cell), angle), self._nodes()
+        layered = self.layered.view()
         stored = float(evaluate_at(k, nodes, layered))
         layered.cells.losses[SWITCHING] += stored  # what the springs of the cell had is booked by who takes them away
-        return stored
+        return stored + float(hourglass_energy(k, nodes, layered))
+
+    def crack(self, live: BoolArray) -> None:
+        """Cells of ``live`` (cells,) at or past the strength of the layers become layered, and leave the mask."""
+        g, (u, q) = self.grid, self.displacement()
+        stress, angle = face_stresses(CellState.of(g, u, q, lean=self.lean_strain()), self.ice)
+        for cell in np.flatnonzero(live & (stress >= self.ice.sigma_t)):
+            self.begin(int(cell), float(angle[cell]))
+            live[cell] = False
+        self.set_cells(live, np.full(g.cells, self.ice.sigma_t), np.ones(g.nodes, bool))
 
     def _corner(self, cell: int) -> int:
         i, j = divmod(cell, self.grid.ny - 1)
@@ -75,11 +119,12 @@ class CrackingEngine(ExplicitEngine):
 
     def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
         mesh, trial, layered = self.mesh, Motion(now.y, now.v.copy()), self.layered.view()
-        crack_forces(layered.used, now.y.shape[2], now.y.reshape(5, -1), 1.0, layered.plate, layered.cells)
+        crack_forces(now.y.shape[2], now.y.reshape(5, -1), 1.0, layered)
         sweep(trial, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
         for f in forces:
             push(f.row, f.column, f.force, trial, mesh.kick, mesh.pace.go)
         give(layered.used, trial, mesh.kick, mesh.pace.go, layered.cells)
+        lean_on(trial, mesh.kick, mesh.pace.go, layered.lean.force)
         return trial.v
 
     # ---- what others ask of the layered cells -----------------------------------------------------------------
@@ -94,15 +139,20 @@ class CrackingEngine(ExplicitEngine):
     def _energies(self, u: Array, q: Array) -> Array:
         layered, x = self.layered.view(), np.zeros_like(self.motion.y)
         self.put(x, np.hstack((u, q)))
-        each: Array = energies(layered.used, x.shape[2], x.reshape(5, -1), layered.plate, layered.cells)
+        each: Array = energies(x.shape[2], x.reshape(5, -1), layered)
         return each
 
-    def pull(self, held: BoolArray) -> float:
-        """Force along x that nodes in ``held`` (nodes,) need against the layered cells now [N]."""
-        layered, y = self.layered.view(), self.motion.y
-        crack_forces(layered.used, y.shape[2], y.reshape(5, -1), 1.0, layered.plate, layered.cells)
-        on = held[self.grid.cell_nodes[self.layered.cell]]  # (count, 4)
-        return -float((layered.cells.force[:, U_X, : layered.used].T * on).sum())
+    def lean_energy(self, u: Array, live: BoolArray) -> float:
+        """As `Engine.lean_energy`."""
+        x, g = np.zeros_like(self.motion.y[:2]), self.grid
+        x[:, : g.nx, : g.ny] = u.T.reshape(2, g.nx, g.ny)
+        return float(lean_energy(x.shape[2], x.reshape(2, -1), self._at_cells(live), self.layered.view()))
+
+    def lean_strain(self) -> Array:
+        """Membrane strain of all cells from their slopes: xx, yy, shear in engineering measure, (3, cells)."""
+        g, strain = self.grid, self.layered.lean.strain.reshape(3, *self.motion.y.shape[1:])
+        held: Array = strain[:, : g.nx - 1, : g.ny - 1].reshape(3, -1)
+        return held
 
     @property
     def crack_losses(self) -> dict[str, float]:

@@ -31,7 +31,7 @@ from lattice.cracks.cells import (
     resultants,
     tangent_energy,
 )
-from lattice.cracks.kinematics import Edges, Strain, elongations, strain_of, turned
+from lattice.cracks.kinematics import Edges, Strain, elongations, leaned, strain_of, turned
 from lattice.cracks.law import CrackLaw, N, T, layer
 from lattice.grid import Array
 
@@ -109,17 +109,17 @@ def slide(
 
 
 @compiled(error_model="numpy")
-def evaluate(k: int, x: Array, way: Array, my: int, plate: Plate, law: CrackLaw, cracks: Cracks) -> float:
+def evaluate(k: int, x: Array, way: Array, my: int, plate: Plate, law: CrackLaw, cracks: Cracks, lean: Array) -> float:
     """Evaluates the law in cell k at the displacements x (5, nodes); the cell goes on with a new tangent.
 
-    ``way`` (5, nodes) is how far the nodes have come in the last sub-step. What leapfrog conserves has x of this and of
-    the last sub-step in its elastic energy, so a force that changes by df takes df . way / 2 beside the energy at x.
-    Returns the energy that the cell stores [J].
+    ``lean`` (3, nodes) are strains from slopes; ``way`` (5, nodes) is how far the nodes have come in the last sub-step.
+    What leapfrog conserves has x of this and of the last sub-step in its elastic energy, so a force that changes by df
+    takes df . way / 2 beside the energy at x. Returns the energy that the cell stores [J].
     """
     d, q = plate.d, 0.5 / plate.d
     b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
     in_sheet, _ = strain_of(b, my, q, x)
-    e, long = turned(in_sheet, c, s), elongations(b, my, 0.5 * d, x)
+    e, long = turned(leaned(in_sheet, b, lean, 1.0), c, s), elongations(b, my, 0.5 * d, x)
     before = edge_energy(k, long, cracks.constant[k] + d * d * tangent_energy(k, e, cracks), cracks)
     old, was = resultants(k, e, 1.0, cracks), edge_forces(k, long, 1.0, cracks)
     a = add_layers(k, e, plate.h, law, cracks)

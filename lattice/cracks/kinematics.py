@@ -53,6 +53,12 @@ def strain_of(b: int, my: int, q: float, y: Array) -> tuple[Strain, Hourglass]:
 
 
 @compiled(inline="always")
+def leaned(e: Strain, b: int, lean: Array, whole: float) -> Strain:
+    """With the membrane strain ``lean`` (3, nodes) that the cell at b has from its slope, times ``whole``."""
+    return Strain(e.n + whole * lean[0, b], e.t + whole * lean[1, b], e.g + whole * lean[2, b], e.kn, e.kt, e.kg)
+
+
+@compiled(inline="always")
 def turned(e: Strain, c: float, s: float) -> Strain:
     """The strain in axes turned by the angle of cosine c and sine s."""
     cc, ss, cs = c * c, s * s, c * s

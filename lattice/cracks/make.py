@@ -11,9 +11,14 @@ from lattice.cracks.law import law_of
 from lattice.cracks.sheet import PRINCIPAL, CrackingSheet
 from lattice.criteria.table import Criterion
 from lattice.explicit.engine import TRUE_INERTIA
+from lattice.explicit_sheet import CONTACT_TIME
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.stiffness import Springs
+
+#: time between two evaluations of the contact in slow interaction: against 2 ms it moves the peak of the 165 m floe by
+#: 0.1 % [s]
+SLOW_CONTACT = 5e-3
 
 
 @dataclass(frozen=True)
@@ -48,4 +53,4 @@ def cracking_sheet(
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
     sub_steps = TRUE_INERTIA if dynamic else SLOW
     engine = CrackingEngine(grid, layers, springs, window, law=law, **{"sub_steps": sub_steps, **options})
-    return CrackingSheet(engine, criteria=criteria)
+    return CrackingSheet(engine, criteria=criteria, contact_time=CONTACT_TIME if dynamic else SLOW_CONTACT)

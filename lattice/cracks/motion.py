@@ -24,8 +24,9 @@ from lattice.cracks.cells import (
     tangent_energy,
 )
 from lattice.cracks.evaluate import evaluate
-from lattice.cracks.kinematics import elongations, strain_of, turned, turned_back
+from lattice.cracks.kinematics import elongations, leaned, strain_of, turned, turned_back
 from lattice.cracks.law import CrackLaw
+from lattice.cracks.slopes import Lean
 from lattice.explicit.layout import PHI_X, PHI_Y, U_X, U_Y, Motion, PerNode, W
 from lattice.grid import Array
 
@@ -37,6 +38,8 @@ class Layered(NamedTuple):
     cells: Cracks
     plate: Plate
     law: CrackLaw
+    lean: Lean
+    leans: bool  #: slopes strain the middle plane; else rotations are small
 
 
 class Nodes(NamedTuple):
@@ -58,7 +61,9 @@ def moved(k: int, my: int, y: Array, layered: Layered) -> bool:
     half = 0.5 * plate.h
     wide = max(abs(s[E_X, k]) + half * abs(s[K_X, k]), abs(s[E_Y, k]) + half * abs(s[K_Y, k]))
     far: float = MOVED * (layered.law.e_0 + WIDE * wide)
-    e, _ = strain_of(layered.cells.corner[k], my, 0.5 / plate.d, y)
+    b = layered.cells.corner[k]
+    in_sheet, _ = strain_of(b, my, 0.5 / plate.d, y)
+    e = leaned(in_sheet, b, layered.lean.strain, 1.0)
     a: float = abs(e.n - s[E_X, k]) + half * abs(e.kn - s[K_X, k])
     c: float = abs(e.t - s[E_Y, k]) + half * abs(e.kt - s[K_Y, k])
     g: float = abs(e.g - s[G_XY, k]) + half * abs(e.kg - s[K_XY, k])
@@ -85,25 +90,28 @@ def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
         for n in (b, b + my, b + 1, b + my + 1):
             nodes.x[c, n] = nodes.y[c, n] - nodes.alpha * nodes.v[c, n]
             nodes.way[c, n] = nodes.dt * nodes.v[c, n]
-    e, _ = strain_of(b, my, 0.5 / layered.plate.d, nodes.y)
+    in_sheet, _ = strain_of(b, my, 0.5 / layered.plate.d, nodes.y)
+    e = leaned(in_sheet, b, layered.lean.strain, 1.0)
     s[E_X, k], s[E_Y, k], s[G_XY, k] = e.n, e.t, e.g
     s[K_X, k], s[K_Y, k], s[K_XY, k] = e.kn, e.kt, e.kg
-    stored: float = evaluate(k, nodes.x, nodes.way, my, layered.plate, layered.law, cracks)
+    lean = layered.lean.strain
+    stored: float = evaluate(k, nodes.x, nodes.way, my, layered.plate, layered.law, cracks, lean)
     return stored
 
 
 @compiled(nogil=True)
-def crack_forces(used: int, my: int, y: Array, whole: float, plate: Plate, cracks: Cracks) -> None:
-    """Forces of the first ``used`` cells on their nodes at the effective displacements y (5, nodes).
+def crack_forces(my: int, y: Array, whole: float, layered: Layered) -> None:
+    """Forces of the layered cells on their nodes at the effective displacements y (5, nodes).
 
     ``whole`` is 1; 0 leaves out what the cells carry without strain, so that y = alpha v gives their damping.
     """
+    plate, cracks, lean = layered.plate, layered.cells, layered.lean.strain
     q, half, f, F = 0.5 / plate.d, 0.5 * plate.d, 0.5 * plate.d, cracks.force
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
-    for k in range(used):
+    for k in range(layered.used):
         b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
         e, h = strain_of(b, my, q, y)
-        Nn, Nt, Ng, Mn, Mt, Mg = resultants(k, turned(e, c, s), whole, cracks)
+        Nn, Nt, Ng, Mn, Mt, Mg = resultants(k, turned(leaned(e, b, lean, whole), c, s), whole, cracks)
         N1, N2, N3 = turned_back(Nn, Nt, Ng, c, s)
         M1, M2, M3 = turned_back(Mn, Mt, Mg, c, s)
         Q0, Q1, Q2, Q3 = edge_forces(k, elongations(b, my, half, y), whole, cracks)
@@ -136,14 +144,42 @@ def give(used: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) ->
 
 
 @compiled(nogil=True)
-def energies(used: int, my: int, x: Array, plate: Plate, cracks: Cracks) -> Array:
-    """Energy of each of the first ``used`` cells at displacements x (5, nodes), hourglass modes included."""
-    out, q, half = np.empty(used), 0.5 / plate.d, 0.5 * plate.d
+def pull_on_held(my: int, held: Array, layered: Layered) -> float:
+    """Force along x that nodes with ``held`` (places,) 1 need against `crack_forces` and slopes [N]."""
+    F, lean, total = layered.cells.force, layered.lean.force, 0.0
+    for k in range(layered.used):
+        b = layered.cells.corner[k]
+        total -= held[b] * F[0, U_X, k] + held[b + my] * F[1, U_X, k]
+        total -= held[b + 1] * F[2, U_X, k] + held[b + my + 1] * F[3, U_X, k]
+    for n in range(held.shape[0]):
+        total -= held[n] * lean[U_X, n]
+    return total
+
+
+@compiled(nogil=True)
+def hourglass_energy(k: int, nodes: Nodes, layered: Layered) -> float:
+    """Of the hourglass modes of cell k, x(n) . K x(n-1) / 2, as leapfrog has it [J]."""
+    plate, b, q = layered.plate, layered.cells.corner[k], 0.5 / layered.plate.d
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
-    for k in range(used):
+    _, y = strain_of(b, nodes.my, q, nodes.y)
+    _, v = strain_of(b, nodes.my, q, nodes.v)
+    now, before = -nodes.alpha, -nodes.alpha - nodes.dt
+    E = H * ((y.x + now * v.x) * (y.x + before * v.x) + (y.y + now * v.y) * (y.y + before * v.y))
+    E += R * ((y.tx + now * v.tx) * (y.tx + before * v.tx) + (y.ty + now * v.ty) * (y.ty + before * v.ty))
+    energy: float = 0.5 * plate.d * plate.d * E
+    return energy
+
+
+@compiled(nogil=True)
+def energies(my: int, x: Array, layered: Layered) -> Array:
+    """Energy of each layered cell at displacements x (5, nodes), hourglass modes included."""
+    plate, cracks, lean = layered.plate, layered.cells, layered.lean.strain
+    out, q, half = np.empty(layered.used), 0.5 / plate.d, 0.5 * plate.d
+    H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
+    for k in range(layered.used):
         b = cracks.corner[k]
         e, h = strain_of(b, my, q, x)
-        E = tangent_energy(k, turned(e, cracks.axis[0, k], cracks.axis[1, k]), cracks)
+        E = tangent_energy(k, turned(leaned(e, b, lean, 1.0), cracks.axis[0, k], cracks.axis[1, k]), cracks)
         E += 0.5 * (H * (h.x * h.x + h.y * h.y) + R * (h.tx * h.tx + h.ty * h.ty))
         out[k] = edge_energy(k, elongations(b, my, half, x), cracks.constant[k] + plate.d * plate.d * E, cracks)
     return out

@@ -7,6 +7,8 @@ slipped by h in any case, or when it has turned by `TURNED`: not when its cells 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
@@ -15,13 +17,11 @@ from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.hinges import DEEP, Hinges, hinges, no_hinges
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import CRITERIA, Criterion
-from lattice.explicit.engine import Marched
-from lattice.explicit.forces import PointForces
+from lattice.explicit.forces import Touch
 from lattice.explicit.window import Window
 from lattice.explicit_sheet import CONTACT_TIME, LIVELY, ExplicitSheet
 from lattice.floe import LOOSE, Release
 from lattice.grid import Array, BoolArray, IntArray
-from lattice.loads import Loads
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import TURNED
 from lattice.strain import CellState
@@ -45,8 +45,6 @@ class CrackingSheet(ExplicitSheet):
     ):
         """As `ExplicitSheet`; the strengths of the ice are those of its layers."""
         super().__init__(engine, share=share, contact_time=contact_time, criteria=criteria)
-        self._pull = 0.0  #: impulse along x that held nodes have taken from layered cells in this window [N s]
-        self._pulls = 0.0, 0.0  #: force along x that they take, at the last two looks of `_holding` [N]
 
     def _check_rest(self) -> None:
         """Cells that are overloaded at rest begin to crack in the first window."""
@@ -78,14 +76,18 @@ class CrackingSheet(ExplicitSheet):
             out.failure = (now - (1.0 - part[0]) * e.dt, e.touch(now, w.contact).force)
         self.failed_cells += cells.tolist()
         self.failure_times += (now - (1.0 - part) * e.dt).tolist()
-        out.causes += self.judge.causes(ended.u, ended.q, self.standing, cells)
+        out.causes += self.judge.causes(ended.u, ended.q, self._eased(), cells)
         out.failed += cells.tolist()
-        _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells), self.ice)
+        lean = e.lean_strain()[:, cells]
+        _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells, lean=lean), self.ice)
         for cell, angle in zip(cells.tolist(), angles.tolist(), strict=True):
             self.energy.book_failure(cell, half)  # with x(n) . K x(n-1) / 2, as leapfrog has it
             self.energy.fracture -= e.begin(cell, angle)
             self.intact[cell] = False
         self._set_cells()
+
+    def _eased(self) -> Standing:
+        return replace(self.standing, lean=self.engine.lean_strain())
 
     def _ease(self) -> None:
         self._set_cells()
@@ -117,9 +119,9 @@ class CrackingSheet(ExplicitSheet):
         whole[layered.cell[deep]] = False
         return hinges(self.grid, whole, layered.cell[deep], self.present, self.held, self.share)
 
-    def retire(self, nodes: IntArray) -> None:
-        """As `Floe.retire`."""
-        super().retire(nodes)
+    def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
+        """As `Floe.depart`; a layered cell goes with the first of its nodes, and is booked once."""
+        super().depart(nodes, live, crushed=crushed)
         self.engine.layered.drop(self._gone())
 
     def _gone(self) -> BoolArray:
@@ -149,7 +151,6 @@ class CrackingSheet(ExplicitSheet):
         self._release_loose(out, release, turned)
         if out.pieces:
             out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
-            self.engine.layered.drop(self._gone())  # with the energy that `book_departure` has booked
 
     def _cut(self, mask: BoolArray, out: Outcome) -> None:
         """Cells that part a piece which has turned too far carry nothing any more."""
@@ -161,23 +162,6 @@ class CrackingSheet(ExplicitSheet):
         out.causes += [TURNED_TOO_FAR] * len(cells)
         self.energy.fracture += self.engine.lose(mask[self.engine.layered.cell], self.state)
 
-    # ---- what held nodes take ---------------------------------------------------------------------------------
-
-    def advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        """As `ExplicitSheet.advance`."""
-        self._pull = 0.0
-        out = super().advance(t, loads, contact, release)
-        r = out.reaction
-        r.held = (r.held[0] + self._pull / self.dt, r.held[1])
-        return out
-
-    def _march(self, w: Window, done: int) -> Marched:
-        out = super()._march(w, done)
-        self._pull += 0.5 * (out.steps * self.engine.dt) * sum(self._pulls)
-        return out
-
-    def _holding(self, load: PointForces) -> float:
-        """As `ExplicitSheet`, which looks before and after the sub-steps of a block."""
-        pull = self.engine.pull(self.support.held)
-        self._pulls = self._pulls[1], pull
-        return super()._holding(load) + pull
+    def _book_half(self, part: float, w: Window, touch: Touch) -> None:
+        super()._book_half(part, w, touch)
+        self.engine.book_pull(part * self.engine.dt)

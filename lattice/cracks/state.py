@@ -11,25 +11,29 @@ from numpy.typing import NDArray
 from lattice.cracks.cells import E_X, E_Y, G_XY, LOSSES, WEIGHTS, Cracks, Plate, room_for
 from lattice.cracks.law import CrackLaw, N
 from lattice.cracks.motion import Layered
+from lattice.cracks.slopes import Lean, level
 from lattice.grid import Array, BoolArray, IntArray
 
 
 class LayeredCells:
     """Layered cells in the order in which they began."""
 
-    def __init__(self, law: CrackLaw, plate: Plate, room: int = 64):
+    def __init__(self, law: CrackLaw, plate: Plate, places: int, room: int = 64):
+        """``places`` of a padded row-by-row array of all nodes."""
         self.law, self.plate, self.count, self._cracks = law, plate, 0, room_for(room)
+        self.lean, self.leans = level(places), True
 
     def __copy__(self) -> LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
         new = object.__new__(LayeredCells)
         new.__dict__.update(vars(self))
         new._cracks = Cracks._make(a.copy() for a in self._cracks)
+        new.lean = Lean._make(a.copy() for a in self.lean)
         return new
 
     def view(self) -> Layered:
         """What the compiled loops take; changes of the arrays are seen here."""
-        return Layered(self.count, self._cracks, self.plate, self.law)
+        return Layered(self.count, self._cracks, self.plate, self.law, self.lean, self.leans)
 
     def add(self, cell: int, corner: int, angle: float) -> int:
         """A cell begins to crack across the direction ``angle`` [rad]; returns its place. ``corner`` as in `Cracks`."""
@@ -66,6 +70,11 @@ class LayeredCells:
     def cell(self) -> IntArray:
         """Their numbers, (count,)."""
         return self._cracks.cell[: self.count]
+
+    @property
+    def corner(self) -> IntArray:
+        """Places of their nodes 0, (count,)."""
+        return self._cracks.corner[: self.count]
 
     @property
     def damage(self) -> Array:

@@ -20,6 +20,7 @@ class Standing:
     live: BoolArray  #: (cells,) intact cells whose nodes are all in the lattice
     beside: BoolArray  #: (cells,) beside a crack tip
     limit: Array  #: (cells,) of the tensile criteria [Pa]
+    lean: Array | None = None  #: (3, cells) as in `CellState`
 
 
 class Judge:
@@ -42,7 +43,7 @@ class Judge:
 
     def utilisation(self, u: Array, q: Array, standing: Standing) -> Array:
         """Of all cells, (cells,); 0 for those that are not live. FloatingPointError if one is not a number."""
-        worst = self._each(CellState.of(self.grid, u, q, limit=standing.limit), standing.beside)
+        worst = self._each(CellState.of(self.grid, u, q, None, standing.limit, standing.lean), standing.beside)
         utilisation = worst[0]
         for other in worst[1:]:
             utilisation = np.maximum(utilisation, other)
@@ -54,7 +55,8 @@ class Judge:
         """Name of the criterion with the largest utilisation of each of these cells."""
         if len(self.criteria) == 1:
             return [self.criteria[0].name] * len(cells)
-        state = CellState.of(self.grid, u, q, cells, standing.limit[cells])
+        lean = None if standing.lean is None else standing.lean[:, cells]
+        state = CellState.of(self.grid, u, q, cells, standing.limit[cells], lean)
         worst = np.argmax(self._each(state, standing.beside[cells]), axis=0)
         return [self.criteria[k].name for k in worst]
 

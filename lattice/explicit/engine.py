@@ -18,7 +18,7 @@ from lattice.contact import EdgeContact, lever_of, point_displacement
 from lattice.criteria.laws import combined_tension
 from lattice.explicit import layout
 from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
-from lattice.explicit.kernels import push, sweep
+from lattice.explicit.kernels import pull_of_springs, push, sweep
 from lattice.explicit.layout import Motion, PerNode
 from lattice.explicit.march import march
 from lattice.explicit.screen import Judge, screen_of, thresholds
@@ -56,6 +56,7 @@ class Marched:
     contact_work: float  #: [J]
     work: Array  #: (loads,) of the other forces [J]
     loss: float  #: taken by hydrodynamic and material damping [J]
+    hold: float  #: mean force along x that held nodes take from all cells [N]
 
 
 class ExplicitEngine(Engine):
@@ -117,7 +118,10 @@ class ExplicitEngine(Engine):
         u, q = self.inertia_u[::2], self.inertia_q
         kick = PerNode(np.where(self._held[::2], 0.0, dt / u), dt / q[::3], dt / q[1::3])
         pace = layout.pace(ice, dt, self.alpha, self.damping)
-        self.mesh, self.screen = layout.mesh(g, kick, self._springs, pace, dt), screen_of(ice, self._judge)
+        self.mesh, self.screen = (
+            layout.mesh(g, self.held[:, 0], kick, self._springs, pace, dt),
+            screen_of(ice, self._judge),
+        )
         self.motion = layout.motion(g)
         self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
 
@@ -209,7 +213,13 @@ class ExplicitEngine(Engine):
         made = self.loop(steps, 1 if lively else steps, load, touch, sums)
         loss = made.loss * (1 if lively else made.steps)
         work, contact_work = self.dt * sums.work, self.dt * made.contact_work
-        return Marched(made.steps, made.overloaded > 0, sums.contact / made.steps, contact_work, work, loss)
+        n, failed = made.steps, made.overloaded > 0
+        return Marched(n, failed, sums.contact / n, contact_work, work, loss, made.hold / n)
+
+    def hold(self) -> float:
+        """Force along x that held nodes take from all cells now [N]."""
+        mesh = self.mesh
+        return float(pull_of_springs(self.motion, mesh.intact, mesh.held, mesh.springs))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop. A lattice whose cells carry more than springs runs its own here."""

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lattice.contact import EdgeContact
+from lattice.explicit.layout import W
 from lattice.grid import Array, IntArray
 from lattice.loads import Loads
 
@@ -54,9 +55,17 @@ class Made(NamedTuple):
     overloaded: int  #: faces of cells at or past their limit at the end of the last one
     contact_work: float  #: sum of the power of the contact [W]
     loss: float  #: work of damping in the sub-steps that were looked at [J]
+    hold: float  #: sum of the force along x that held nodes take from all cells [N]
 
 
 NOTHING = PointForces(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 5)), np.zeros(1, np.int64))
+
+
+def indenter(nodes: IntArray, columns: int, stiffness: Array | float) -> Touch:
+    """Vertical springs of this stiffness, (m,) or all alike [N/m], on nodes (m,); their far ends are ``at``, now 0."""
+    m, tangent = len(nodes), np.zeros((len(nodes), 3, 3))
+    tangent[:, W, W] = -stiffness
+    return Touch(*np.divmod(nodes, columns), np.zeros(m), np.zeros(m), np.zeros((m, 3)), np.zeros((m, 3)), tangent)
 
 
 def point_forces(loads: Loads, columns: int) -> PointForces:

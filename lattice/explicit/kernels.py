@@ -104,6 +104,25 @@ def gather(i: int, ny: int, motion: Motion, kick: PerNode, lever: float, pace: P
 
 
 @compiled(nogil=True)
+def pull_of_springs(motion: Motion, intact: Array, held: Array, springs: HalfSprings) -> float:
+    """Force along x that nodes with ``held`` (n_x+1, m_y) 1 need against the springs [N]; else it is 0."""
+    y, kn, ks, kd, total = motion.y, springs.K_n, springs.K_s, springs.K_n_dia, 0.0
+    for i in range(held.shape[0] - 1):
+        row = 0.0
+        for j in range(held.shape[1] - 1):
+            a, b, c, e = held[i, j], held[i + 1, j], held[i, j + 1], held[i + 1, j + 1]
+            if a != b or a != c or a != e:
+                cell = intact[i + 1, j + 1]
+                along, side = cell + intact[i + 1, j], cell + intact[i, j + 1]
+                x_a, x_b, x_c, x_e = y[U_X, i, j], y[U_X, i + 1, j], y[U_X, i, j + 1], y[U_X, i + 1, j + 1]
+                y_a, y_b, y_c, y_e = y[U_Y, i, j], y[U_Y, i + 1, j], y[U_Y, i, j + 1], y[U_Y, i + 1, j + 1]
+                row += (a - b) * kn * along * (x_b - x_a) + (a - c) * ks * side * (x_c - x_a)
+                row += kd * cell * ((a - e) * (x_e - x_a + y_e - y_a) + (c - b) * (x_b - x_c - y_b + y_c))
+        total -= row
+    return total
+
+
+@compiled(nogil=True)
 def sweep(motion: Motion, intact: Array, kick: PerNode, springs: HalfSprings, pace: Pace, rows: Array) -> None:
     """One step of all nodes without external forces, in place."""
     nx, ny = kick.u.shape

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lattice.grid import Array, Grid
+from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.stiffness import Springs
 
@@ -72,6 +72,7 @@ class Mesh(NamedTuple):
 
     intact: Array  #: (n_x+1, m_y) 1 or 0, cell (i, j) at [i+1, j+1]; zero all around
     threshold: Array  #: (n_x, n_y) of `screen.overloaded` for cell (i, j), infinite where there is none
+    held: Array  #: (n_x+1, m_y) 1 at nodes that are held along x, else 0
     kick: PerNode  #: dt / mass; zero where held [s/kg], [s/(kg m2)]
     mass: PerNode  #: zero where held [kg], [kg m2]
     springs: HalfSprings
@@ -93,7 +94,7 @@ def motion(grid: Grid) -> Motion:
     return Motion(aligned(*shape), aligned(*shape))
 
 
-def mesh(grid: Grid, kick: PerNode, springs: HalfSprings, pace: Pace, dt: float) -> Mesh:
+def mesh(grid: Grid, held: BoolArray, kick: PerNode, springs: HalfSprings, pace: Pace, dt: float) -> Mesh:
     """A lattice of no cells; ``kick`` (nodes,) each. ValueError where the grid is too wide for the loops."""
     wide, columns = _wide(grid), _wide(grid) - LANES
     if wide > LINE:
@@ -101,18 +102,21 @@ def mesh(grid: Grid, kick: PerNode, springs: HalfSprings, pace: Pace, dt: float)
     room, padded, masses = aligned(3, 5, grid.nx + 1, wide), aligned(3, grid.nx, columns), aligned(3, grid.nx, columns)
     threshold = aligned(grid.nx, columns)
     threshold[:] = np.inf
+    on_x = aligned(grid.nx + 1, wide)
+    on_x[: grid.nx, : grid.ny] = held.reshape(grid.nx, grid.ny)
     for k, values in enumerate(kick):
         padded[k, :, : grid.ny] = values.reshape(grid.nx, grid.ny)
     np.divide(dt, padded, out=masses, where=padded > 0.0)
     return Mesh(
-        aligned(grid.nx + 1, wide),
-        threshold,
-        PerNode(*padded),
-        PerNode(*masses),
-        springs,
-        pace,
-        aligned(LINES * LINE),
-        Scratch(*room),
+        intact=aligned(grid.nx + 1, wide),
+        threshold=threshold,
+        held=on_x,
+        kick=PerNode(*padded),
+        mass=PerNode(*masses),
+        springs=springs,
+        pace=pace,
+        rows=aligned(LINES * LINE),
+        scratch=Scratch(*room),
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from lattice.compiled import compiled
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
-from lattice.explicit.kernels import push, sweep
+from lattice.explicit.kernels import pull_of_springs, push, sweep
 from lattice.explicit.layout import PHI_X, Mesh, Motion, Pace, PerNode, W
 from lattice.explicit.screen import Screen, overloaded
 from lattice.grid import Array, IntArray
@@ -89,13 +89,14 @@ def march(
     Work is exact for leapfrog: a force times the mean of the velocities before and after. That of damping is taken in
     every ``stride``-th sub-step, which costs as much as a sub-step.
     """
-    pace, contact_work, loss = mesh.pace, 0.0, 0.0
+    pace, contact_work, loss, hold = mesh.pace, 0.0, 0.0, 0.0
     for step in range(steps):
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
         if step % stride == 0:
             damped(motion, mesh)
         contact_work += half_power(load, touch, sums, motion.v)
+        hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
         push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
         push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
@@ -104,5 +105,5 @@ def march(
             loss += dissipated(motion.v, mesh.scratch.before, mesh.scratch.after, mesh.mass)
         count = overloaded(motion, mesh.threshold, screen, pace.alpha)
         if count > 0:
-            return Made(step + 1, count, contact_work, loss)
-    return Made(steps, 0, contact_work, loss)
+            return Made(step + 1, count, contact_work, loss, hold)
+    return Made(steps, 0, contact_work, loss, hold)

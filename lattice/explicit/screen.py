@@ -57,27 +57,42 @@ def thresholds(limits: Array, ice: Ice, d: float, judge: Judge = combined_tensio
     return 4.0 * d * SCREENED[judge](ice)[1] * limits / ice.E
 
 
+@compiled(inline="always")
+def membrane_sums(i: int, j: int, y: Array, v: Array, alpha: float) -> tuple[float, float, float]:
+    """Twice d times the membrane strain of cell (i, j), shear in engineering measure [m]."""
+    d0x = y[U_X, i + 1, j + 1] - y[U_X, i, j] - alpha * (v[U_X, i + 1, j + 1] - v[U_X, i, j])
+    d0y = y[U_Y, i + 1, j + 1] - y[U_Y, i, j] - alpha * (v[U_Y, i + 1, j + 1] - v[U_Y, i, j])
+    d1x = y[U_X, i + 1, j] - y[U_X, i, j + 1] - alpha * (v[U_X, i + 1, j] - v[U_X, i, j + 1])
+    d1y = y[U_Y, i + 1, j] - y[U_Y, i, j + 1] - alpha * (v[U_Y, i + 1, j] - v[U_Y, i, j + 1])
+    return d0x + d1x, d0y - d1y, d0y + d1y + d0x - d1x
+
+
+@compiled(inline="always")
+def reached(
+    i: int, j: int, e: tuple[float, float, float], motion: Motion, screen: Screen, alpha: float, limit: float
+) -> int:
+    """How many faces of cell (i, j) with the `membrane_sums` e reach F_1 mean + R >= limit."""
+    y, v, f, fibre, (e11, e22, e12) = motion.y, motion.v, screen.F_1, screen.fibre, e
+    r0x = y[PHI_X, i + 1, j + 1] - y[PHI_X, i, j] - alpha * (v[PHI_X, i + 1, j + 1] - v[PHI_X, i, j])
+    r0y = y[PHI_Y, i + 1, j + 1] - y[PHI_Y, i, j] - alpha * (v[PHI_Y, i + 1, j + 1] - v[PHI_Y, i, j])
+    r1x = y[PHI_X, i + 1, j] - y[PHI_X, i, j + 1] - alpha * (v[PHI_X, i + 1, j] - v[PHI_X, i, j + 1])
+    r1y = y[PHI_Y, i + 1, j] - y[PHI_Y, i, j + 1] - alpha * (v[PHI_Y, i + 1, j] - v[PHI_Y, i, j + 1])
+    k11, k22, k12 = fibre * (r0x + r1x), fibre * (r0y - r1y), fibre * (r0y + r1y + r0x - r1x)
+    mean, bend = e11 + e22, k11 + k22
+    top = f * (mean + bend) + math.sqrt((e11 - e22 + k11 - k22) ** 2 + (e12 + k12) ** 2)
+    bottom = f * (mean - bend) + math.sqrt((e11 - e22 - k11 + k22) ** 2 + (e12 - k12) ** 2)
+    return int(not top < limit) + int(not bottom < limit)
+
+
 @compiled(nogil=True)
 def overloaded(motion: Motion, threshold: Array, screen: Screen, alpha: float) -> int:
     """How many faces of cells reach F_1 mean + R >= threshold, (4.6) with (4.17)-(4.20); what is not a number counts.
 
     Strains are left as sums of node differences, 4 d times those of `strain.mean_strains`; so is ``threshold``.
     """
-    y, v, f, fibre, count = motion.y, motion.v, screen.F_1, screen.fibre, 0
+    count = 0
     for i in range(threshold.shape[0]):
         for j in range(threshold.shape[1]):
-            d0x = y[U_X, i + 1, j + 1] - y[U_X, i, j] - alpha * (v[U_X, i + 1, j + 1] - v[U_X, i, j])
-            d0y = y[U_Y, i + 1, j + 1] - y[U_Y, i, j] - alpha * (v[U_Y, i + 1, j + 1] - v[U_Y, i, j])
-            d1x = y[U_X, i + 1, j] - y[U_X, i, j + 1] - alpha * (v[U_X, i + 1, j] - v[U_X, i, j + 1])
-            d1y = y[U_Y, i + 1, j] - y[U_Y, i, j + 1] - alpha * (v[U_Y, i + 1, j] - v[U_Y, i, j + 1])
-            r0x = y[PHI_X, i + 1, j + 1] - y[PHI_X, i, j] - alpha * (v[PHI_X, i + 1, j + 1] - v[PHI_X, i, j])
-            r0y = y[PHI_Y, i + 1, j + 1] - y[PHI_Y, i, j] - alpha * (v[PHI_Y, i + 1, j + 1] - v[PHI_Y, i, j])
-            r1x = y[PHI_X, i + 1, j] - y[PHI_X, i, j + 1] - alpha * (v[PHI_X, i + 1, j] - v[PHI_X, i, j + 1])
-            r1y = y[PHI_Y, i + 1, j] - y[PHI_Y, i, j + 1] - alpha * (v[PHI_Y, i + 1, j] - v[PHI_Y, i, j + 1])
-            e11, e22, e12 = d0x + d1x, d0y - d1y, d0y + d1y + d0x - d1x
-            k11, k22, k12 = fibre * (r0x + r1x), fibre * (r0y - r1y), fibre * (r0y + r1y + r0x - r1x)
-            mean, bend = e11 + e22, k11 + k22
-            top = f * (mean + bend) + math.sqrt((e11 - e22 + k11 - k22) ** 2 + (e12 + k12) ** 2)
-            bottom = f * (mean - bend) + math.sqrt((e11 - e22 - k11 + k22) ** 2 + (e12 - k12) ** 2)
-            count += int(not top < threshold[i, j]) + int(not bottom < threshold[i, j])
+            e = membrane_sums(i, j, motion.y, motion.v, alpha)
+            count += reached(i, j, e, motion, screen, alpha, threshold[i, j])
     return count

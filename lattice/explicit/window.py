@@ -12,7 +12,7 @@ from lattice.explicit.forces import PointForces, point_forces
 from lattice.explicit.layout import U_X, W
 from lattice.grid import Array, BoolArray, IntArray
 from lattice.loads import Loads, keep
-from lattice.reaction import Applied
+from lattice.reaction import Pair
 from lattice.state import State
 
 
@@ -27,15 +27,14 @@ class Window:
     contact: EdgeContact
     columns: int  #: nodes across
     impulse: Array  #: (n, 3) of the contact [N s]
-    u: Array  #: (n, 2) of the displacement [m s]
-    q: Array  #: (n, 3) [m s], [rad s]
+    q: Array  #: (n, 3) of the deflection and rotation [m s], [rad s]
     push: Array  #: (loads, 2) impulse of each load along x and z [N s]
-    held: float = 0.0  #: part of the impulse along x that acts on held nodes [N s]
+    hold: float = 0.0  #: impulse along x of the held nodes on the sheet, less what loads bring to them at once [N s]
 
     @classmethod
     def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int) -> Window:
         """A window that begins with this state; ``columns`` nodes across."""
-        nothing = np.zeros((len(start.q), 3)), np.zeros_like(start.u), np.zeros_like(start.q)
+        nothing = np.zeros((len(start.q), 3)), np.zeros_like(start.q)
         load = point_forces(loads, columns)
         return cls(t, start, loads, load, contact, columns, *nothing, np.zeros((len(loads), 2)))
 
@@ -49,19 +48,16 @@ class Window:
         for k, each in enumerate(self.loads):
             yield each.name, slice(self.load.first[k], self.load.first[k + 1])
 
-    def note(self, time: float, before: tuple[Array, Array], after: tuple[Array, Array], held: BoolArray) -> None:
-        """Adds some sub-steps that last ``time`` [s], by the trapezoidal rule; ``held`` (nodes,) along x."""
+    def note(self, time: float, before: Array, after: Array) -> None:
+        """Adds some sub-steps that last ``time`` [s], from q ``before`` to q ``after`` by the trapezoidal rule."""
         load = self.load
-        for total, old, new in zip((self.u, self.q), before, after, strict=True):
-            total += 0.5 * time * (old + new)
-        on_held = held[load.row * self.columns + load.column]
+        self.q += 0.5 * time * (before + after)
         for k, (_, of) in enumerate(self.by_name()):
             self.push[k] += time * np.array((load.force[of, U_X].sum(), load.force[of, W].sum()))
-        self.held += time * float(load.force[on_held, U_X].sum())
 
     def mean(self, dt: float) -> State:
-        """Mean displacement over a window of ``dt`` [s], with the velocities of its start."""
-        return State(self.u / dt, self.q / dt, self.start.u_dot, self.start.q_dot)
+        """Mean deflection and rotation over a window of ``dt`` [s]; the rest is that of its start."""
+        return State(self.start.u, self.q / dt, self.start.u_dot, self.start.q_dot)
 
     def contact_mean(self, dt: float) -> tuple[Array, IntArray]:
         """Mean contact force (m, 3) [N] and its nodes (m,): those of the edge now, then others that have had any."""
@@ -70,7 +66,7 @@ class Window:
         touched = np.concatenate((nodes, left))
         return np.asarray(mean[touched]), touched
 
-    def applied(self, dt: float) -> Applied:
-        """Mean loads."""
+    def applied(self, dt: float) -> dict[str, Pair]:
+        """Mean loads by name, along x and z [N]."""
         pairs = (self.push / dt).tolist()
-        return Applied({n.name: (x, z) for n, (x, z) in zip(self.loads, pairs, strict=True)}, float(self.held / dt))
+        return {n.name: (x, z) for n, (x, z) in zip(self.loads, pairs, strict=True)}

@@ -85,6 +85,10 @@ class Engine:
         """Energy of cracked cells that go on carrying load, of those with a node in ``touching`` or of all [J]."""
         return 0.0
 
+    def lean_energy(self, u: Array, live: BoolArray) -> float:  # noqa: ARG002
+        """Energy by which the slopes of elastic cells, those in ``live`` (cells,), add to that of their springs [J]."""
+        return 0.0
+
     @property
     def crack_losses(self) -> dict[str, float]:
         """What such cells have taken, by cause [J]."""

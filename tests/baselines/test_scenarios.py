@@ -50,9 +50,12 @@ def test_a_plane_has_no_cone_formulas():
 
 
 def test_a_formula_that_cannot_serve_says_why(cosim):
-    code, out, _ = cosim("baseline", GLA, "--set", "contact.friction=0.6")
+    code, out, _ = cosim("baseline", GLA, "--set", "contact.friction=0.57")
     assert code == 0
-    assert "does not slide" in " ".join(out.split())
+    assert "use less friction or a gentler slope" in " ".join(out.split())
+    code, _, err = cosim("baseline", GLA, "--set", "contact.friction=0.6")  # above 1 / tan(60 deg) no ice slides
+    assert code == 2
+    assert "does not slide" in err
 
 
 def test_bad_values_are_one_line(cosim):
@@ -77,6 +80,7 @@ def a_run(text):
         "seed": "0",
         "duration_ns": "150000000",
         "window_ns": "50000000",
+        "averaging_s": "0",
         "overrides": "[]",
     }
     ledger = {n: np.ones(3) for n in ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")}

@@ -24,7 +24,13 @@ def series(t, fx, events=()):
     """A run with one component of breaking load."""
     load = np.zeros((len(t), 3, 3))
     load[:, 0, 0] = fx
-    return RunData("x", {"window_ns": str(int(1e9 * (t[1] - t[0])))}, np.rint(t * 1e9).astype(int), load, tuple(events))
+    return RunData(
+        "x",
+        {"window_ns": str(int(1e9 * (t[1] - t[0]))), "averaging_s": "0"},
+        np.rint(t * 1e9).astype(int),
+        load,
+        tuple(events),
+    )
 
 
 def test_event_features(run, synthetic):
@@ -43,7 +49,7 @@ def test_missing_features_are_none(run):
 
 
 def test_an_empty_run_has_no_features():
-    empty = RunData("x", {"window_ns": "1"}, np.empty(0, int), np.empty((0, 3, 3)))
+    empty = RunData("x", {"window_ns": "1", "averaging_s": "0"}, np.empty(0, int), np.empty((0, 3, 3)))
     assert features.peak_load(empty) is None
     assert features.peak_time(empty) is None
     assert first_contact(empty) is None
@@ -117,7 +123,7 @@ def test_ratio(simulated, value, expected):
 def test_json_of_a_comparison(run):
     name, reference = compare.reference_of(run, None)
     content = compare.to_json(run, name, compare.compare(run, reference))
-    assert set(content) == {"run", "reference", "features", "series", "peaks"}
+    assert set(content) == {"run", "reference", "remark", "features", "series", "peaks", "averaging_s"}
     assert content["series"] is None
     by_name = {f["name"]: f for f in content["features"]}
     first = by_name["circumferential_fx"]

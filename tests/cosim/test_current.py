@@ -86,7 +86,7 @@ def test_a_resolved_scenario_has_the_same_current(tmp_path):
 @pytest.mark.parametrize(
     ("value", "says"),
     [
-        ("'0.1 m/s'", 'write 2 values in brackets, for example ["0.1 m/s", "0 m/s"]'),
+        ("'0.1 m/s'", 'write 2 values in brackets; for example ["0.1 m/s", "0 m/s"]'),
         ("['0.1 m/s']", "write 2 values in brackets"),
         ("['0.1 m/s', 3]", 'a quantity needs its unit: write it as a string, for example "3 m/s"'),
         ("['0.1 m/s', '3 m']", "wrong unit, this quantity is measured in m/s"),

@@ -16,7 +16,7 @@ LOAD = np.array(
         [[0.0, 1.0, -2.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
     ]
 )
-RUN = RunData("run", {"window_ns": "1000000000"}, np.arange(1, 5) * 1_000_000_000, LOAD)
+RUN = RunData("run", {"window_ns": "1000000000", "averaging_s": "0"}, np.arange(1, 5) * 1_000_000_000, LOAD)
 
 
 def test_a_structure_that_is_pressed_down_has_its_peak_below_zero():

@@ -93,25 +93,40 @@ def truncated(run_file, tmp_path):
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.97])
-def test_a_truncated_recording_is_refused_and_recovered(truncated, run_file, tmp_path, share):
+def test_a_truncated_recording_is_read_and_says_what_is_missing(truncated, run_file, tmp_path, share):
     path = truncated(share)
-    with pytest.raises(RecordingError, match=r"truncated.*cosim recover"):
-        read_run(path)
+    run, whole = read_run(path), read_run(run_file)
+    n = len(run.t_ns)
+    assert n > 0.5 * share * WINDOWS
+    assert np.array_equal(run.load, whole.load[:n])
+    assert run.cut
+    assert run.remark.startswith(
+        f"killed.mcap is truncated (its run goes on, was killed, or the copy is not whole): it "
+        f"holds {run.t[-1]:g} of 12 s"
+    )
     rescued = recover(path, tmp_path / "clean.mcap")
-    clean, whole = read_run(tmp_path / "clean.mcap"), read_run(run_file)
-    n = len(clean.t_ns)
-    assert n == len(rescued.t_ns) > 0.5 * share * WINDOWS
-    assert np.array_equal(clean.load, whole.load[:n])
+    clean = read_run(tmp_path / "clean.mcap")
+    assert len(clean.t_ns) == len(rescued.t_ns) == n
+    assert not clean.cut
+    assert (
+        clean.remark
+        == f"clean.mcap is of a run that did not reach its end: its end is missing; it holds {run.t[-1]:g} of 12 s"
+    )
     assert clean.metadata == whole.metadata
     assert clean.texts == whole.texts
-    assert list(messages(tmp_path / "clean.mcap", ["/ice/nodes"]))
+    assert list(messages(tmp_path / "clean.mcap", ["/ice/nodes"])) == list(messages(path, ["/ice/nodes"]))
+    assert (whole.remark, whole.ended) == ("", "complete")
 
 
-def test_every_byte_that_is_missing_is_noticed(truncated, run_file):
-    size = len(run_file.read_bytes())
+def test_every_byte_that_is_missing_is_noticed(run_file, tmp_path):
+    data = run_file.read_bytes()
     for missing in (1, 9, 200):
-        with pytest.raises(RecordingError, match="truncated"):
-            read_run(truncated((size - missing) / size))
+        (tmp_path / "short.mcap").write_bytes(data[:-missing])
+        run = read_run(tmp_path / "short.mcap")
+        assert "truncated" in run.remark
+        assert len(run.t_ns) == WINDOWS
+    (tmp_path / "long.mcap").write_bytes(data + b"x")
+    assert read_run(tmp_path / "long.mcap").cut
 
 
 def test_a_flipped_byte_is_noticed(run_file, tmp_path):
@@ -123,15 +138,18 @@ def test_a_flipped_byte_is_noticed(run_file, tmp_path):
 
 
 def test_nothing_to_recover(truncated, tmp_path):
-    for share in (0.0005, 0.001):
+    for share in (0.0005, 0.001, 0.01):
         with pytest.raises(RecordingError, match=r"not a recording of cosim|holds no data|not an MCAP"):
             recover(truncated(share), tmp_path / "out.mcap")
     assert not (tmp_path / "out.mcap").exists()
 
 
-def test_recovery_does_not_overwrite_its_source(run_file):
-    with pytest.raises(RecordingError, match="does not overwrite"):
-        recover(run_file, run_file)
+def test_recovery_does_not_overwrite_its_source(run_file, cosim):
+    before = run_file.read_bytes()
+    code, out, err = cosim("recover", run_file, "-o", run_file, "--force")
+    assert (code, out) == (2, "")
+    assert "does not overwrite its source" in err
+    assert run_file.read_bytes() == before
 
 
 def test_foreign_files(tmp_path):

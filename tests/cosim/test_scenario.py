@@ -67,7 +67,7 @@ def fault(*overrides: str) -> str:
         ("contact.model=crush", ["contact.model", "crush", "did you mean crushing?"]),
         ("structure.neck_radius=16 m", ["structure.neck_radius", "15 m"]),
         ("structure.kind=plane", ["structure.waterline_radius", "plane"]),
-        ("structure.slope=95 deg", ["structure.slope", "0 and 90 deg"]),
+        ("structure.slope=95 deg", ["structure.slope", "1 deg to 89 deg"]),
         ("ice.density=1100 kg/m^3", ["ice.density", "sinks", "1006"]),
         ("ice.density=1006 kg/m^3", ["ice.density", "sinks", "1006"]),
         ("rubble.iterations=0", ["rubble.iterations", "greater than or equal to 1"]),
@@ -103,14 +103,14 @@ def test_missing_value_shows_an_example(tmp_path):
     text = (load_scenario(FLOE).folder / "scenario.toml").read_text()
     file = tmp_path / "mine.toml"
     file.write_text("\n".join(line for line in text.splitlines() if not line.startswith("thickness")))
-    with pytest.raises(ScenarioError, match=r'mine.toml: ice.thickness is missing; add thickness = "3 m"'):
+    with pytest.raises(ScenarioError, match=r'mine.toml: ice.thickness is missing; add thickness = "0.8 m"'):
         load_scenario(file)
 
 
 def test_missing_section_is_named(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text('[scenario]\ntitle = "x"\nduration = "1 s"\n')
-    with pytest.raises(ScenarioError, match=r"ice is missing; add the section \[ice\] \(and 5 more\)"):
+    with pytest.raises(ScenarioError, match=r"ice is missing; add the section \[ice\] \(and 5 more"):
         load_scenario(file)
 
 

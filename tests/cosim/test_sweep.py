@@ -11,8 +11,9 @@ import pytest
 from cosim.errors import FailedError, InputError
 from cosim.show.tornado import tornado
 from cosim.study import sweep as sweeping
-from cosim.study.command import show, write_csv
+from cosim.study.command import show
 from cosim.study.sweep import sweep, with_ratios
+from cosim.study.table import Table
 from cosim.study.variants import Axis, Variant, parse_axis, variants
 
 CASE = "van_vliet_2018_floe_55m_centre"
@@ -71,7 +72,7 @@ def fake(scenario, overrides, variant):
 def test_a_failure_and_a_dead_process_stop_nothing():
     seen = []
     chosen = variants([Axis("a.x", ("2", "fail", "die", "3"))], grid=False)
-    rows = sweep("x", (), chosen, 2, lambda v, row: seen.append(v.name), fake)
+    rows = sweep("x", (), chosen, 2, lambda row, ended: seen.append(row["variant"]), fake)
     assert [row.get("fx_peak") for row in rows] == [1.0, 2.0, None, None, 3.0]
     assert sorted(seen) == sorted(v.name for v in chosen)
     assert rows[2]["error"] == "it failed"
@@ -81,7 +82,7 @@ def test_a_failure_and_a_dead_process_stop_nothing():
 
 
 def test_ratios_without_a_base_are_none():
-    rows = with_ratios([{"error": "no"}, {"fx_peak": 1.0}])
+    rows = with_ratios([{"error": "no"}, {"fx_peak": 1.0}], {"error": "no"})
     assert rows[1]["fx_ratio"] is None
     assert rows[1]["error"] is None
 
@@ -90,15 +91,16 @@ def test_ratios_without_a_base_are_none():
 def content():
     """A sweep over two workers."""
     chosen = variants([Axis("contact.strength", ("1 MPa",)), Axis("sheet.nodes", ("[14,14]", "[12,13]"))], grid=False)
-    rows = sweep(CASE, TINY, chosen, 2, lambda v, row: None)
+    rows = sweep(CASE, TINY, chosen, 2, lambda row, ended: None)
     return {"scenario": "s", "keys": ["contact.strength", "sheet.nodes"], "variants": rows}
 
 
 def test_numbers_do_not_depend_on_the_pool(content):
     """Two workers, one after the other in one process, and this process: the same bits but for the cost."""
     chosen = [Variant(), Variant((("contact.strength", "1 MPa"),))]
-    one = sweep(CASE, TINY, chosen, 1, lambda v, row: None)
-    here = with_ratios([{"variant": v.name, **dict(v.changes), **sweeping.run_variant(CASE, TINY, v)} for v in chosen])
+    one = sweep(CASE, TINY, chosen, 1, lambda row, ended: None)
+    here = [{"variant": v.name, **dict(v.changes), **sweeping.run_variant(CASE, TINY, v)} for v in chosen]
+    with_ratios(here, here[0])
     for a, b, c in zip(content["variants"], one, here, strict=False):
         bare = [{k: v for k, v in row.items() if k != "wall_s"} for row in (a, b, c)]
         assert bare[0] == bare[1] == bare[2]
@@ -107,7 +109,8 @@ def test_numbers_do_not_depend_on_the_pool(content):
 
 def test_the_table_holds_the_failed_variant_with_its_error(content, tmp_path):
     out = tmp_path / "t.csv"
-    write_csv(content, out)
+    with Table(out) as table:
+        table.write(content["keys"], content["variants"])
     with out.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["variant"] for row in rows] == [
@@ -181,10 +184,10 @@ def test_a_wrong_base_is_refused_before_anything_runs():
     assert "did you mean" in done.stderr
 
 
-def test_a_load_that_still_grows_at_the_end_is_pointed_out(content, monkeypatch):
+def test_a_variant_that_is_not_trustworthy_is_pointed_out(content, monkeypatch):
     lines = []
     monkeypatch.setattr("cosim.study.command.print_line", lines.append)
-    times = [{"fx_time": 1.0, "fz_time": 0.5}, {"fx_time": 0.5, "fz_time": 0.9}, {"fx_time": 0.1, "fz_time": 0.1}, {}]
-    show({**content, "variants": [row | t for row, t in zip(content["variants"], times, strict=True)]})
-    assert [line.split(":")[0] for line in lines] == ["largest load at the end", "failed"]
-    assert "base" in lines[0]
+    why = [{"not_trustworthy": "it is at its end"}, {"not_trustworthy": ""}, {"not_trustworthy": ""}, {}]
+    show({**content, "variants": [row | t for row, t in zip(content["variants"], why, strict=True)]})
+    assert lines[0] == "not trustworthy: base: because it is at its end"
+    assert [line.split(":")[0] for line in lines] == ["not trustworthy", "failed"]

@@ -36,6 +36,7 @@ def fragment(rows=4, columns=3, *, turn=0.1, omega=0.05, cut=0.0, face=1.0):
         velocity=velocity,
         tilt=np.full(len(s), -turn),
         tilt_rate=np.full(len(s), -omega),
+        flooded=np.zeros(len(s)),
         cut=np.where(row == 0, cut, 0.0),
         cut_tan=np.ones(len(s)),
         cut_face=face,
@@ -148,3 +149,15 @@ def test_angular_momentum_of_a_turning_plate():
     x = f.position[:, 0] - centre[0]
     assert found.angular[1] == pytest.approx(-0.05 * (f.mass * (x**2 + H**2 / 12)).sum(), rel=1e-12)
     assert found.scale[1] >= abs(found.angular[1])
+
+
+@pytest.mark.parametrize(("backfill", "part"), [("filling", 0.375), ("full", 1.0), ("none", 0.0)])
+def test_a_plate_begins_with_the_water_that_its_nodes_had_on_top(backfill, part):
+    """Where tops fill: the mean over its ice; else all plates are as `RubblePhysics.backfill` has it."""
+    physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, backfill=backfill)
+    slope = plane_slope(np.pi / 4, top=5.0, toe_depth=20.0)
+    port = RubblePort(slope, physics, pitch=D, origin=1.0, domain=Domain())
+    f = fragment(columns=2)
+    f = replace(f, flooded=np.where(f.column == 0, 0.25, 0.5), position=f.position + np.array([-5.0, 0.0, 0.0]))
+    port.add(f)
+    assert [b.flooded for b in port.layer.blocks] == pytest.approx([part])

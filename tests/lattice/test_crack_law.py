@@ -10,11 +10,14 @@ import pytest
 from lattice.cracks.cells import POINTS, WEIGHTS, Plate, room_for
 from lattice.cracks.evaluate import evaluate
 from lattice.cracks.law import CrackLaw, layer
-from lattice.cracks.motion import crack_forces
+from lattice.cracks.motion import Layered, crack_forces
+from lattice.cracks.slopes import level
 
 Z, W = np.array(POINTS), np.array(WEIGHTS)
 E, SIGMA_T, SIGMA_C, H, CELL = 8.7e9, 430e3, 4e6, 3.0, 2.8
 G_F = 300.0  # J/m2
+
+FLAT = np.zeros((3, 4))  # no strain from slopes
 
 
 def law(nu=0.0, fracture_energy=G_F, mu=0.3, sigma_c=SIGMA_C):
@@ -186,7 +189,7 @@ def one_cell(angle=0.4, damage=0.0, nu=1 / 3):
 
 
 def energy(cracks, plate, the_law, x):
-    stored = evaluate(0, np.ascontiguousarray(x), np.zeros((5, 4)), 2, plate, the_law, cracks)
+    stored = evaluate(0, np.ascontiguousarray(x), np.zeros((5, 4)), 2, plate, the_law, cracks, FLAT)
     q, H_, R = 0.5 / plate.d, plate.hourglass, plate.hourglass * plate.h**2 / 12
     sign = np.array([1.0, -1.0, -1.0, 1.0])
     mode = x @ sign * q
@@ -194,7 +197,7 @@ def energy(cracks, plate, the_law, x):
 
 
 def nodal(cracks, plate, x):
-    crack_forces(1, 2, np.ascontiguousarray(x), 1.0, plate, cracks)
+    crack_forces(2, np.ascontiguousarray(x), 1.0, Layered(1, cracks, plate, law(), level(4), leans=False))
     return cracks.force[:, :, 0]  # nodes (0,0), (1,0), (0,1), (1,1)
 
 
@@ -205,7 +208,7 @@ def test_forces_are_the_slope_of_the_energy(seed, damage):
     random = np.random.default_rng(seed)
     x = 2e-6 * random.standard_normal((5, 4))
     cracks, plate, the_law = one_cell(damage=damage)
-    evaluate(0, x, np.zeros((5, 4)), 2, plate, the_law, cracks)
+    evaluate(0, x, np.zeros((5, 4)), 2, plate, the_law, cracks, FLAT)
     f = nodal(cracks, plate, x).copy()
     order = [0, 2, 1, 3]  # row-by-row places 0 .. 3 are nodes (0,0), (0,1), (1,0), (1,1)
     for component in range(5):
@@ -220,7 +223,7 @@ def test_forces_balance_and_rigid_motion_costs_nothing():
     random = np.random.default_rng(3)
     cracks, plate, the_law = one_cell(damage=1.0)
     x = 1e-3 * random.standard_normal((5, 4))
-    evaluate(0, x, np.zeros((5, 4)), 2, plate, the_law, cracks)
+    evaluate(0, x, np.zeros((5, 4)), 2, plate, the_law, cracks, FLAT)
     f = nodal(cracks, plate, x).copy()
     assert np.abs(f[:, :3].sum(axis=0)).max() < 1e-9 * np.abs(f).max()
     xy = np.array([[0, 0], [CELL, 0], [0, CELL], [CELL, CELL]])
@@ -232,5 +235,5 @@ def test_forces_balance_and_rigid_motion_costs_nothing():
     rigid[0], rigid[1] = 1e-3 - 1e-5 * place[:, 1], 2e-3 + 1e-5 * place[:, 0]
     rigid[2] = 3e-3 + 1e-5 * place[:, 0] - 2e-5 * place[:, 1]
     rigid[3], rigid[4] = -1e-5, 2e-5
-    evaluate(0, rigid, np.zeros((5, 4)), 2, plate, the_law, whole)
+    evaluate(0, rigid, np.zeros((5, 4)), 2, plate, the_law, whole, FLAT)
     assert np.abs(nodal(whole, plate, rigid)).max() < 1e-6

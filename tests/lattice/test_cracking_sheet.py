@@ -144,3 +144,20 @@ def test_a_push_that_jumps_between_two_windows_leaves_no_residual():
         before = sheet.energy.residual
         if k == 50:
             push.height = push.height - 0.05
+
+
+def test_a_layered_cell_between_two_pieces_is_booked_once():
+    """It goes with the piece that leaves first; booked with both, its energy would be missing from the balance."""
+    sheet = sheet_of()
+    pushed(sheet, 2.5, (0.0, 4e6))
+    layered, before = sheet.engine.layered, sheet.energy.residual
+    energies = sheet.engine._energies(sheet.state.u, sheet.state.q)
+    cell = int(layered.cell[np.argmax(energies)])
+    assert energies.max() > 10.0 * abs(before)
+    for node in GRID.cell_nodes[cell][:2]:
+        live = sheet.live_cells
+        sheet.present[node] = False
+        sheet.depart(np.array([node]), live)
+    sheet.energy.measure(sheet.state, sheet.live_cells, sheet.present)
+    assert cell not in layered.cell
+    assert sheet.energy.residual == pytest.approx(before, abs=1e-3 * energies.max())

@@ -7,7 +7,8 @@ from cosim.build import build
 from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
 from coupling.budget import AXES, TERMS
-from coupling.energy import SOURCES, STORES, residual_of
+from coupling.energy import LOAD_WORK, SOURCES, STORES, residual_of
+from lattice.tops import NAMES
 
 CASES = ["basin_2010_floe_165m", "basin_2010_floe_34x68m", "basin_2010_floe_55m_centre", "basin_2010_floe_55m_corner"]
 PARTS = ("sheet", "rubble", "crushed", "cleared")
@@ -16,12 +17,13 @@ COMMON = ("ice", "water", "structure", "contact", "drift", "fracture", "coupling
 
 #: shares that are measured: a run stops itself at 1e-12 of the mass, 1e-9 of a momentum and 1e-2 of the energy
 MASS, MOMENTUM, ENERGY = 1e-14, 1e-12, 1e-4
-#: residual of the force budget of a window: exact to rounding in steps of the implicit engine; the explicit one takes
-#: what the held edges carry by the trapezoidal rule, which misses the waves of a window in which many cells crack
-OPEN, CLOSING = {"fx": 1e-9, "fz": 1e-9}, {"fx": 0.04, "fz": 5e-4}
+#: residual of the force budget of a window: exact to rounding in steps of the implicit engine; the explicit one sees
+#: water and weight every 5 ms (measured: 0.3 % along x and z, 0.1 % along z at 2 ms)
+OPEN, CLOSING = {"fx": 1e-9, "fz": 1e-9}, {"fx": 5e-3, "fz": 5e-3}
 #: implicit engine, cells that carry nothing when they have failed
 OPEN_CRACKS = (
     "fracture.cracks='open'",
+    "water.tops='dry'",
     "fracture.longest_step='50 ms'",
     "ice.tensile_strength='967 kPa'",
     "ice.flexural_strength='967 kPa'",
@@ -64,9 +66,14 @@ def energy_is_kept(terms):
 def budget_is_kept(loads, budgets, axis, force, flipped=None):
     """The terms that carry the load, each formed on its own, sum to what the contacts exert, in every window [N]."""
     load = np.array(loads)[:, {"fx": 0, "fz": 2}[axis]]
-    terms = {name: np.array([b[f"{axis}_{name}"] for b in budgets]) for name in TERMS}
+    terms = {name: np.array([b[f"{axis}_{name}"] for b in budgets]) for name in carriers(budgets[-1])}
     total = sum(-term if name == flipped else term for name, term in terms.items())
     return np.abs(total - load).max() < force[axis] * np.abs(load).max()
+
+
+def carriers(budget):
+    """Terms of every run, then those of the water on flooded tops where they flood."""
+    return (*TERMS, *(name for name in NAMES if f"fz_{name}" in budget))
 
 
 def check_balances(ledger, seen, initial, force=CLOSING):
@@ -74,7 +81,7 @@ def check_balances(ledger, seen, initial, force=CLOSING):
     assert all(ice_is_kept(window, initial) for window in seen.ledger)
     assert not ice_is_kept({**seen.ledger[-1], "crushed_mass": -seen.ledger[-1]["crushed_mass"]}, initial)
     assert max(ledger["momentum_error"], ledger["angular_momentum_error"]) < MOMENTUM
-    terms = {n: v for n, v in seen.ledger[-1].items() if n in (*STORES, *SOURCES) or n.endswith("_loss")}
+    terms = {n: v for n, v in seen.ledger[-1].items() if n in (*STORES, *SOURCES) or n.endswith(("_loss", LOAD_WORK))}
     assert energy_is_kept(terms)
     large = [name for name, value in terms.items() if abs(value) > 5.0 * ENERGY * terms["drift_work"]]
     assert len(large) >= 15
@@ -83,7 +90,9 @@ def check_balances(ledger, seen, initial, force=CLOSING):
         assert budget_is_kept(seen.load, seen.budget, axis, force)
         largest = np.abs(seen.load).max(axis=0)[{"fx": 0, "fz": 2}[axis]]
         least = max(1e3, 2.0 * force[axis] * largest)
-        at_work = [name for name in TERMS if max(abs(b[f"{axis}_{name}"]) for b in seen.budget) > least]
+        at_work = [
+            name for name in carriers(seen.budget[-1]) if max(abs(b[f"{axis}_{name}"]) for b in seen.budget) > least
+        ]
         assert len(at_work) >= 2
         assert not [name for name in at_work if budget_is_kept(seen.load, seen.budget, axis, force, flipped=name)]
 
@@ -129,7 +138,7 @@ def test_with_open_cracks_the_floe_of_34_x_68_m_loads_the_cone_with_8_mn():
         for w in ("50 ms", "25 ms")
     )
     check_balances(result.ledger, seen, result.ledger["initial_mass"], OPEN)
-    peak, again = (r.sustained()["peaks"]["fx"]["value"] for r in (result, halved))
+    peak, again = (r.to_json()["peaks"]["fx"]["value"] for r in (result, halved))
     mean, mean_again = (np.mean([load.sum(axis=0)[0] for _, load in r.loads]) for r in (result, halved))
     assert peak == pytest.approx(8e6, rel=0.2)
     assert again == pytest.approx(peak, rel=0.05)
@@ -152,7 +161,7 @@ def deepest(layer):
 def test_the_first_encounter_of_the_165_m_floe_with_cracks_that_close():
     """Section 6.3: 19 MN (x), 17.5 MN (z), 10 to 18 s after touch. At least 14 and 11.5 MN after 8 to 14 s."""
     result, _ = run("basin_2010_floe_165m", "scenario.duration='16 s'")
-    peaks = result.sustained()["peaks"]
+    peaks = result.to_json()["peaks"]
     assert 14e6 < peaks["fx"]["value"] < 1.1 * 19e6
     assert 11.5e6 < peaks["fz"]["value"] < 1.1 * 17.5e6
     assert 8.0 < peaks["fx"]["time"] < 14.0
@@ -177,3 +186,20 @@ def test_with_open_cracks_the_165_m_floe_with_its_rubble_runs_for_five_minutes()
     ledger = scheduler.ledger
     errors = {"momentum_error": ledger.momentum_error, "angular_momentum_error": ledger.angular_momentum_error}
     check_balances(errors, seen, ledger.initial_mass, OPEN)
+
+
+@pytest.mark.parametrize("propagation", ["quasi-static", "dynamic"])
+def test_what_a_contact_brings_to_held_nodes_is_not_lost(propagation):
+    """A plane as wide as the sheet presses on the corners of its held sides too, which pass the force on at once."""
+    sheet = (
+        "sheet.sides='held'",
+        "sheet.nodes=[31, 3]",
+        f"fracture.propagation='{propagation}'",
+        "fracture.cracks='open'",
+    )
+    result, seen = run("upward_plane", *sheet, "scenario.duration='0.5 s'")
+    push = max(abs(load[0]) for load in seen.load)
+    assert push > 0.0
+    assert result.ledger["energy_residual"] < 1e-6
+    residual = np.array([b["fx_residual"] for b in seen.budget])
+    assert np.abs(residual).max() < (1e-6 if propagation == "quasi-static" else 1e-3) * push

@@ -18,7 +18,7 @@ from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
 from lattice.cracks.engine import SLOW, CrackingEngine
 from lattice.cracks.law import CrackLaw, N
 from lattice.criteria.table import CRITERIA
-from lattice.explicit.forces import NOTHING, Touch
+from lattice.explicit.forces import NOTHING, indenter
 from lattice.explicit.layout import W
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
@@ -86,18 +86,16 @@ def pushed(p: dict[str, Any], nodes: int, crack: str) -> Pushed:
     e, live = engine_of(p, nodes, crack)
     g = e.grid
     tip = np.flatnonzero((g.xy[:, 0] == 0.0) & (np.abs(g.xy[:, 1]) < 0.5 * p["width"]))
-    spring, m = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2, len(tip)
-    at, tangent, zero, blocks = np.zeros((m, 3)), np.zeros((m, 3, 3)), np.zeros(m), 4
-    tangent[:, W, W] = -spring
-    touch = Touch(*np.divmod(tip, g.ny), zero, zero, at, np.zeros((m, 3)), tangent)
+    spring = 0.1 * float(e.inertia_q[3 * tip].min()) / e.dt**2
+    touch, blocks = indenter(tip, g.ny, spring), 4
     cells, ices = np.flatnonzero(live), [ice_of(p, s) for s in p["strength"]]
     w, force, use = [0.0], [0.0], [np.zeros((len(JUDGES), len(ices)))]
     for look in range(LOOKS):
         total = 0.0
         for part in range(blocks):
-            at[:, W] = -p["w"] * (look + (part + 0.5) / blocks) / LOOKS
+            touch.at[:, W] = -p["w"] * (look + (part + 0.5) / blocks) / LOOKS
             total -= float(e.march(e.sub_steps // blocks, NOTHING, touch, lively=False).contact[:, W].sum())
-        state = CellState.of(g, *e.displacement(), cells)
+        state = CellState.of(g, *e.displacement(), cells, lean=e.lean_strain()[:, cells])
         w.append(-float(e.at(tip)[:, W].mean()))
         force.append(total / blocks)
         use.append(np.array([[float(CRITERIA[j].judge(state, ice).max()) for ice in ices] for j in JUDGES]))

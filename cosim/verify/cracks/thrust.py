@@ -34,6 +34,8 @@ PARAMETERS: dict[str, Any] = {
 SOURCE = "M = N (h/2 - N / (2 sigma_c)), rectangular stress block"
 LAYERS = 81
 
+FLAT = np.zeros((3, 4))  #: no strain from slopes
+
 
 def law_of(p: dict[str, Any]) -> CrackLaw:
     """A brittle law without Poisson effect; the crack is there before."""
@@ -53,7 +55,7 @@ def cell_section(strain: float, p: dict[str, Any]) -> tuple[float, float]:
     """Thrust [N/m] and moment [N] of a lattice cell at a membrane strain and the curvature of the case."""
     (cracks, plate), x = cracked_cell(p), np.zeros((5, 4))  # two rows of two nodes
     x[U_X, 2:], x[PHI_X, 2:] = strain * p["d"], p["curvature"] * p["d"]
-    evaluate(0, x, np.zeros((5, 4)), 2, plate, law_of(p), cracks)
+    evaluate(0, x, np.zeros((5, 4)), 2, plate, law_of(p), cracks, FLAT)
     force = resultants(0, Strain(strain, 0.0, 0.0, p["curvature"], 0.0, 0.0), 1.0, cracks)
     return -force[N_N], force[M_N]
 

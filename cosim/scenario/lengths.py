@@ -1,0 +1,61 @@
+"""Lengths that a case is made of: how far ice bends, how long its pieces are. SI."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+
+def characteristic_length(model: Any) -> float:
+    """(D / rho_w g)^(1/4) of the floating plate [m]."""
+    i = model.ice
+    D = i.youngs_modulus * i.thickness**3 / (12.0 * (1.0 - i.poisson_ratio**2))
+    return float((D / (model.water.density * model.water.gravity)) ** 0.25)
+
+
+def breaking_length(model: Any) -> float:
+    """Distance of the largest moment from the edge of a half-infinite beam on water that is pressed down there [m].
+
+    pi / 4 (4 E I / k)^(1/4), Hetenyi (1946), beams on elastic foundation.
+    """
+    i = model.ice
+    beam = (i.youngs_modulus * i.thickness**3 / (3.0 * model.water.density * model.water.gravity)) ** 0.25
+    return float(math.pi / 4.0 * beam)
+
+
+def width_at_waterline(model: Any) -> float | None:
+    """Of the structure [m]; None for a plane, and for a profile that has no waterline."""
+    s = model.structure
+    if s.waterline_radius is not None:
+        return 2.0 * float(s.waterline_radius)
+    around = _around_the_waterline(s.profile)
+    if around is None:
+        return None
+    (low, inner), (high, outer) = around
+    return 2.0 * (inner + (outer - inner) * -low / (high - low))
+
+
+def slope_at_waterline(model: Any) -> float | None:
+    """Of the structure, from the horizontal [rad]; None for a profile that has no waterline, or is upright there."""
+    s = model.structure
+    if s.slope is not None:
+        return float(s.slope)
+    around = _around_the_waterline(s.profile)
+    if around is None or around[0][1] == around[1][1]:
+        return None
+    (low, inner), (high, outer) = around
+    return math.atan((high - low) / abs(outer - inner))
+
+
+def _around_the_waterline(profile: Any) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """The points [height, radius] of a profile below and above water."""
+    for below, above in pairwise(profile or ()):
+        if below[0] <= 0.0 < above[0]:
+            return below, above
+    return None
+
+
+def drift_in_run(model: Any) -> float:
+    """How far the ice drifts in the run [m]."""
+    return float(model.drift.velocity * model.scenario.duration)

@@ -1,0 +1,59 @@
+"""Rules of [ice] and [fracture]: what the lattice can take, and which strengths belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic_core import PydanticCustomError
+
+from cosim.scenario.ice import STRENGTHS
+from cosim.scenario.names import strengths_of
+from cosim.scenario.section import fault
+
+Faults = Iterator[PydanticCustomError]
+
+
+def stiffness_is_positive(m: Any) -> Faults:
+    """Springs of the lattice: (3.21)."""
+    if m.ice.poisson_ratio > 1 / 3 + 1e-12:
+        yield fault("ice.poisson_ratio", "negative stiffness: use a value in [0, 1/3]")
+    elif not m.ice.poisson_ratio >= 0:
+        yield fault("ice.poisson_ratio", "not a lattice value: use a value in [0, 1/3]")
+
+
+def ice_floats(m: Any) -> Faults:
+    """Lighter than the water."""
+    if m.ice.density >= m.water.density:
+        yield fault("ice.density", f"this ice sinks; use less than the water's {m.water.density:g} kg/m^3")
+
+
+def compression_is_strongest(m: Any) -> Faults:
+    """The envelope (4.6) has its corner in compression; ice bears several times more there than in tension."""
+    for key in ("tensile_strength", "flexural_strength", "upward_flexural_strength", "downward_flexural_strength"):
+        tension = getattr(m.ice, key)
+        if tension is not None and tension > m.ice.compressive_strength:
+            yield fault(
+                "ice.compressive_strength",
+                f"{m.ice.compressive_strength / 1e3:g} kPa is below the {key.replace('_', ' ')} of "
+                f"{tension / 1e3:g} kPa; ice bears two to ten times as much in compression",
+            )
+
+
+def criteria_have_their_strengths(m: Any) -> Faults:
+    """Each criterion that is judged."""
+    needed = strengths_of(m.fracture.judged)
+    if m.fracture.cracks == "closing":  # tension is judged with the strength of the layers, from a beam test
+        needed.pop("sigma_t", None)
+        if m.fracture.layer_strength is not None or m.ice.beam_test is not None:
+            needed.pop("sigma_f", None)
+    for key, (field, _) in STRENGTHS.items():
+        if field in needed and getattr(m.ice, key) is None:
+            yield fault(
+                f"ice.{key}",
+                f"missing; the failure criterion {needed[field]} needs it: "
+                "add it, or leave the criterion out of fracture.criteria",
+            )
+
+
+RULES = (stiffness_is_positive, ice_floats, compression_is_strongest, criteria_have_their_strengths)
