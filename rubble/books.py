@@ -16,10 +16,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray, Record, Records, record
+from rubble.arrays import Array, Record, Records, record
 from rubble.compiled import compiled
 from rubble.plates import Plates
-from rubble.rows import ICE, JOINT, SHEET, STRUCTURE, Edges, Rows, speed
+from rubble.rows import ICE, JOINT, SHEET, STRUCTURE, Edges, Rows, sheet_speed, speed
 from rubble.water import Hulls
 
 #: since the start [J]: put in by stepping, by correction, by thrust; done by plates on the sheet; lost to drag; work of
@@ -102,22 +102,30 @@ def kick(plates: Plates, hulls: Hulls, thrust: Array, forces: Array, pressure: A
 
 @compiled(nogil=True)
 def book_contacts(
-    rows: Rows, count: int, kicked: Records, kicked_edge: Array, plates: Plates, edges: Edges, books: Record
+    rows: Rows,
+    count: int,
+    kicked: tuple[Records, Records, Array],
+    plates: Plates,
+    edges: Edges,
+    books: Record,
 ) -> None:
-    """Adds what each contact of a sub-step takes; ``kicked`` (n + 1,), (e, 2) are the motions before the solver."""
-    motion, moves = plates.motion, edges.motion
+    """Adds what each contact of a sub-step takes.
+
+    ``kicked``: the motions of plates (n + 1,), of nodes of the sheet and of edges (e, 2) before the solver.
+    """
+    motion, nodes, moves = plates.motion, edges.nodes, edges.motion
+    plates_before, nodes_before, moves_before = kicked
     for c in range(count):
         point = rows.point[c]
-        i, k, e = point.a, point.b, point.edge
-        x = z = lost = rubbed = 0.0
-        if e >= 0:
-            x, z = 0.5 * (kicked_edge[e, 0] + moves[e, 0]), 0.5 * (kicked_edge[e, 1] + moves[e, 1])
+        i, k = point.a, point.b
+        lost = rubbed = 0.0
         for d in range(3):
             way = rows.way[c, d]
             if way.impulse == 0.0:
                 continue
-            on_edge = way.x * x + way.z * z
-            mean = 0.5 * (speed(way, kicked[i], kicked[k]) + speed(way, motion[i], motion[k]))
+            on_edge = sheet_speed(nodes_before, moves_before, point, way) + sheet_speed(nodes, moves, point, way)
+            on_edge *= 0.5
+            mean = 0.5 * (speed(way, plates_before[i], plates_before[k]) + speed(way, motion[i], motion[k]))
             books.on_sheet -= way.impulse * on_edge
             if d == 0:
                 lost -= way.impulse * (mean - on_edge)
@@ -135,7 +143,7 @@ def book_contacts(
 
 
 @compiled(nogil=True)
-def sum_contacts(rows: Rows, count: int, sums: Array, nodes: Records, offset: IntArray, momenta: Array) -> None:
+def sum_contacts(rows: Rows, count: int, sums: Array, nodes: Records, momenta: Array) -> None:
     """Adds the impulses of a sub-step to ``sums`` (n, 9) of the plates, to nodes of the sheet, to what comes in."""
     for c in range(count):
         point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
@@ -155,35 +163,18 @@ def sum_contacts(rows: Rows, count: int, sums: Array, nodes: Records, offset: In
             sums[k, 3] += push
             if kind == SHEET:
                 sums[k, 4] += push
-                e = point.edge
-                _on_nodes(nodes[offset[e] : offset[e + 1]], point, -x, -y, -z)
+                _on_nodes(nodes, point, -x, -y, -z)
             else:
                 sums[point.a, 3] += push
 
 
 @compiled(nogil=True)
 def _on_nodes(nodes: Records, at: Record, x: float, y: float, z: float) -> None:
-    """Divide an impulse (x, y, z) on the sheet between the two nodes next to it; force and pitching moment are kept.
-
-    Linear weights along x keep the moment of the vertical force. The horizontal force acts off the line of the nodes;
-    its moment goes into a pair of vertical forces.
-    """
-    m = nodes.shape[0]
-    if m == 1:
-        nodes[0].impulse_x += x
-        nodes[0].impulse_y += y
-        nodes[0].impulse_z += z
-        return
-    k = 0
-    while k < m - 2 and at.x < nodes[k + 1].x:
-        k += 1
-    front, rear = nodes[k], nodes[k + 1]
-    span = front.x - rear.x
-    w = (at.x - rear.x) / span
-    lever = w * front.z + (1.0 - w) * rear.z - at.z
+    """Divide an impulse (x, y, z) on the sheet between the two nodes next to it, see `rows.locate`."""
+    front, rear, w = nodes[at.front], nodes[at.rear], at.weight
     front.impulse_x += w * x
     front.impulse_y += w * y
-    front.impulse_z += w * z + x * lever / span
+    front.impulse_z += w * z + x * at.lever
     rear.impulse_x += (1.0 - w) * x
     rear.impulse_y += (1.0 - w) * y
-    rear.impulse_z += (1.0 - w) * z - x * lever / span
+    rear.impulse_z += (1.0 - w) * z - x * at.lever

@@ -13,7 +13,7 @@ from rubble.compiled import compiled
 from rubble.cut import nearest
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
-from rubble.rows import ICE, SHEET, STRUCTURE, Edges, Rows, set_arms, set_way
+from rubble.rows import ICE, SHEET, STRUCTURE, Edges, Rows, locate, set_arms, set_way
 from rubble.slices import Pieces, Slices
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
@@ -65,8 +65,9 @@ def find_pairs(scene: Scene) -> None:
         set_real(body + layout.angle, np.arctan2(r[2, 0], r[0, 0]))
     for e in range(edges.body.shape[0]):
         if edges.body[e] != 0:
-            set_real(edges.body[e] + layout.x, edges.place[e, 0])
-            set_real(edges.body[e] + layout.z, edges.place[e, 1])
+            foremost = edges.nodes[edges.offset[e]]
+            set_real(edges.body[e] + layout.x, foremost.x)
+            set_real(edges.body[e] + layout.z, foremost.z)
     for i in range(sections.space.shape[0]):
         carray(pointer(sections.pairs[i]), 1, LIST)[0].count = 0
         step_space(sections.step, sections.space[i], scene.dt)
@@ -136,6 +137,7 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
         depth += deeper
     elif a == SHEET_SLOT:
         point.kind, point.edge = SHEET, section
+        depth += _on_sheet(scene.edges, section, point, nx, nz)
     else:
         point.a = scene.slices.plate[a]
         n_y = _lean(scene, a, b, nx, nz)
@@ -186,6 +188,17 @@ def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple
         x = np.copysign(least, x)
     point.y = y
     return nx * (face.constant + face.radial * y / x), shift * nx
+
+
+@compiled(nogil=True)
+def _on_sheet(edges: Edges, section: int, point: Record, nx: float, nz: float) -> float:
+    """By how much a contact with the sheet is deeper than with its outline, whose nodes have moved since it was made."""
+    nodes, first = edges.nodes, edges.offset[section]
+    locate(point, nodes, first, edges.offset[section + 1])
+    foremost, f, r, w = nodes[first], nodes[point.front], nodes[point.rear], point.weight
+    x = w * (f.x - f.outline_x) + (1.0 - w) * (r.x - r.outline_x) - foremost.x
+    z = w * (f.z - f.outline_z) + (1.0 - w) * (r.z - r.outline_z) - foremost.z
+    return float(x * nx + z * nz)
 
 
 @compiled(nogil=True)

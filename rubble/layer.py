@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rubble import table
-from rubble.arrays import Array
+from rubble.arrays import Array, rows
 from rubble.cut import Solids, open_water
 from rubble.domain import Domain
 from rubble.geometry import overlap_area
@@ -27,7 +27,7 @@ from rubble.piece import Plate, Slab, Start, one_piece
 from rubble.prism import Prism
 from rubble.section import Section
 from rubble.sections import SectionTable
-from rubble.sheet import SheetBody, SheetMotion
+from rubble.sheet import MEETS, SheetBody, SheetMotion
 from rubble.store import Store
 from rubble.window import Runner
 
@@ -168,9 +168,37 @@ class RubbleLayer:
             own.sheet = None
             self.table_of_sections.changed = True
 
-    def set_yields(self, keys: Sequence[int], yields: Array) -> None:
-        """How the sheet's edges in these sections yield to impulses on each of them (2, k, k), x and z [1/kg]."""
-        self.runner.yields = dict(zip(keys, range(len(keys)), strict=True)), np.asarray(yields, np.float64)
+    def set_yields(self, keys: Sequence[int], yields: Array | None) -> None:
+        """How the sheet's edges in these sections yield to impulses on each of them (2, k, k), x and z [1/kg].
+
+        None: sheet and rubble go in lockstep, see `meet`.
+        """
+        known = dict(zip(keys, range(len(keys)), strict=True))
+        self.runner.yields = None if yields is None else (known, np.asarray(yields, np.float64))
+
+    def meet(self, nodes: Array) -> Array:
+        """One sub-step of a window that has begun, in lockstep with the sheet; mean forces on its nodes (m, 3) [N].
+
+        ``nodes`` (m, 11): what `sheet.MEETS` names, of all sections with a sheet, in their order, front first.
+        """
+        known = self.runner.edges.nodes
+        if nodes.shape != (len(known), len(MEETS)):
+            raise ValueError(f"sheet: {len(known)} nodes were given when the window began, now {len(nodes)}")
+        before = rows(known, "impulse_x", 3).copy()
+        rows(known, MEETS[0], 2)[:] = nodes[:, :2]
+        rows(known, MEETS[2], len(MEETS) - 2)[:] = nodes[:, 2:]
+        self._go(1)
+        return np.asarray((rows(known, "impulse_x", 3) - before) / self.physics.substep)
+
+    def begin(self) -> None:
+        """A window begins, of which `meet` does the sub-steps."""
+        self.runner.begin(self.store, self.table_of_sections, self.joints)
+
+    def end(self) -> None:
+        """It ends."""
+        self.runner.end(self.store, self.table_of_sections)
+        self.runner.after(self.store, self.table_of_sections, self.time)
+        self._clear()
 
     def set_form_drag(self, coefficient: float) -> None:
         """Another C_d for a while: initial rubble settles sooner in thick water."""
@@ -180,10 +208,13 @@ class RubbleLayer:
         """Move all plates on by a window of whole sub-steps; then count what has left."""
         if n_substeps < 1:
             raise ValueError(f"a window of {n_substeps} sub-steps; give at least 1")
-        self.runner.advance(self.store, self.table_of_sections, self.joints, n_substeps)
-        self.time += n_substeps * self.physics.substep
-        self.runner.after(self.store, self.table_of_sections, self.time)
-        self._clear()
+        self.begin()
+        self._go(n_substeps)
+        self.end()
+
+    def _go(self, n: int) -> None:
+        self.runner.go(n)
+        self.time += n * self.physics.substep
 
     def _clear(self) -> None:
         x, y, z = self.store.plates.position[:-1].T

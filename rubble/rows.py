@@ -22,10 +22,12 @@ HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 #: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
 #: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left [m]; plates a and b;
-#: section whose sheet is end a, else -1; kind, see above; slices a and b, and which point of theirs it is
+#: section whose sheet is end a, else -1; kind, see above; slices a and b, and which point of theirs it is; of a sheet
+#: the nodes before and behind the point, the weight of the one before, and the height of the line of nodes over the
+#: point by their distance
 POINT = record(
-    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met"),
-    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature"),
+    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met", "weight", "lever"),
+    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature", "front", "rear"),
 )
 #: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit
 #: of relative speed moves [kg]; impulse [N s]; speed of b against a that it goes for [m/s]
@@ -64,21 +66,88 @@ def room(count: int) -> Rows:
 
 
 class Edges(NamedTuple):
-    """The edge of the sheet in all sections: one body with a full matrix in place of an inverse mass."""
+    """The sheet in all sections: its nodes, and the edges that yield beside them, see `sheet`."""
 
-    place: Array  #: (e, 2) of each, x and z [m]
-    motion: Array  #: (e, 2) velocity [m/s]
+    nodes: Records  #: NODE of all sections with a sheet, foremost first
+    offset: IntArray  #: (e + 1,) section e owns nodes[offset[e]:offset[e + 1]]
+    motion: Array  #: (e, 2) velocity with which an edge yields, x and z [m/s]
     shift: Array  #: (e, 2) see `plates.Plates.shift`
-    driven: Array  #: (e, 2) velocity that the lattice says it has with the forces that it knows [m/s]
-    carried: Array  #: (e, 2) these forces [N]
-    yields: Array  #: (2, e, e) velocity in x, and in z, of each for an impulse on each [1/kg]
+    carried: Array  #: (e, 2) forces that the lattice knows [N]
+    yields: Array  #: (2, e, e) velocity in x, and in z, of each for an impulse on each [1/kg]; (2, 0, 0) in lockstep
     body: IntArray  #: (e,) address of its body in pymunk; 0 where there is no sheet
 
 
-def still_edges(count: int) -> Edges:
-    """Edges of so many sections that have no sheet."""
-    place, motion, shift, driven, carried = (np.zeros((count, 2)) for _ in range(5))
-    return Edges(place, motion, shift, driven, carried, np.zeros((2, count, count)), np.zeros(count, np.int64))
+def still_edges(nodes: Records, offset: IntArray, *, yielding: bool) -> Edges:
+    """Edges of sections with these nodes that do not move beside them."""
+    count = len(offset) - 1
+    motion, shift, carried = (np.zeros((count, 2)) for _ in range(3))
+    side = count if yielding else 0
+    return Edges(nodes, offset, motion, shift, carried, np.zeros((2, side, side)), np.zeros(count, np.int64))
+
+
+@compiled(nogil=True)
+def locate(point: Record, nodes: Records, first: int, end: int) -> None:
+    """The nodes first to end of the sheet between which a point lies; beyond the ends the line goes on straight.
+
+    Linear weights along x keep the moment of a vertical force. A horizontal force acts off the line of the nodes; its
+    moment goes into a pair of vertical forces.
+    """
+    k = first
+    while k < end - 2 and point.x < nodes[k + 1].x:
+        k += 1
+    point.front, point.rear, point.weight, point.lever = k, k, 1.0, 0.0
+    if end - first > 1:
+        front, rear = nodes[k], nodes[k + 1]
+        span = front.x - rear.x
+        w = (point.x - rear.x) / span
+        point.rear, point.weight, point.lever = k + 1, w, (w * front.z + (1.0 - w) * rear.z - point.z) / span
+
+
+@compiled(nogil=True)
+def sheet_speed(nodes: Records, moves: Array, point: Record, way: Record) -> float:
+    """Speed of the sheet's end of a row along one of its directions; ``moves`` as `Edges.motion`."""
+    if point.edge < 0:
+        return 0.0
+    f, r, w, e = nodes[point.front], nodes[point.rear], point.weight, point.edge
+    x = w * f.v_x + (1.0 - w) * r.v_x + point.lever * (f.v_z - r.v_z) + moves[e, 0]
+    y = w * f.v_y + (1.0 - w) * r.v_y
+    z = w * f.v_z + (1.0 - w) * r.v_z + moves[e, 1]
+    found: float = x * way.x + y * way.y + z * way.z
+    return found
+
+
+@compiled(nogil=True)
+def push_edge(yields: Array, motion: Array, e: int, x: float, z: float) -> None:
+    """An impulse (x, z) of the rubble on the sheet in section e moves the edge in all sections."""
+    for f in range(yields.shape[1]):
+        motion[f, 0] += yields[0, e, f] * x
+        motion[f, 1] += yields[1, e, f] * z
+
+
+@compiled(nogil=True)
+def push_sheet(edges: Edges, point: Record, way: Record, j: float) -> None:
+    """An impulse j along a direction on the plate of a row, and the opposite one on its sheet."""
+    x, y, z = -j * way.x, -j * way.y, -j * way.z
+    f, r, w = edges.nodes[point.front], edges.nodes[point.rear], point.weight
+    f.v_x += f.light_x * w * x
+    f.v_y += f.light_y * w * y
+    f.v_z += f.light_z * (w * z + point.lever * x)
+    r.v_x += r.light_x * (1.0 - w) * x
+    r.v_y += r.light_y * (1.0 - w) * y
+    r.v_z += r.light_z * ((1.0 - w) * z - point.lever * x)
+    push_edge(edges.yields, edges.motion, point.edge, x, z)
+
+
+@compiled(nogil=True)
+def _lightness(edges: Edges, point: Record, x: float, y: float, z: float) -> float:
+    """Speed of the sheet's end of a row along (x, y, z) for a unit impulse there."""
+    f, r, w, e = edges.nodes[point.front], edges.nodes[point.rear], point.weight, point.edge
+    u, l = 1.0 - w, point.lever * x
+    total = w * w * (f.light_x * x * x + f.light_y * y * y) + u * u * (r.light_x * x * x + r.light_y * y * y)
+    total += f.light_z * (w * z + l) ** 2 + r.light_z * (u * z - l) ** 2
+    if edges.yields.shape[1] > 0:
+        total += x * x * edges.yields[0, e, e] + z * z * edges.yields[1, e, e]
+    return float(total)
 
 
 @compiled(nogil=True)
@@ -126,23 +195,22 @@ def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
             px = py = pz = qx = qy = qz = 0.0
         way.a_x, way.a_y, way.a_z, way.ta_x, way.ta_y, way.ta_z = px, py, pz, qx, qy, qz
         if e >= 0:
-            total += ux * ux * edges.yields[0, e, e] + uz * uz * edges.yields[1, e, e]
+            total += _lightness(edges, point, ux, uy, uz)
         way.mass = 1.0 / total
 
 
 @compiled(nogil=True)
 def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surface, dt: float) -> None:
     """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step."""
-    motion, moves = plates.motion, edges.motion
+    motion, nodes, moves = plates.motion, edges.nodes, edges.motion
     for c in range(count):
         point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
-        a, b, e = motion[point.a], motion[point.b], point.edge
-        u = speed(n, a, b)
+        a, b = motion[point.a], motion[point.b]
+        u = speed(n, a, b) - sheet_speed(nodes, moves, point, n)
         mu = surface.mu_structure if point.kind == STRUCTURE else surface.mu_ice
-        x, z = (moves[e, 0], moves[e, 1]) if e >= 0 else (0.0, 0.0)
-        u -= n.x * x + n.z * z
         if mu < 0.0:
-            v, w = speed(t, a, b) - t.x * x - t.z * z, speed(s, a, b) - s.x * x - s.z * z
+            v = speed(t, a, b) - sheet_speed(nodes, moves, point, t)
+            w = speed(s, a, b) - sheet_speed(nodes, moves, point, s)
             mu = rate_dependent(np.sqrt(v * v + w * w))
         point.mu = mu
         n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0

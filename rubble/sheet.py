@@ -1,15 +1,20 @@
 """The sheet as the rubble of one section meets it: its edge and its underside, as a body that moves without turning.
 
-A kinematic sheet would jam blocks against the structure with unlimited force. The edge moves as the lattice says,
-``driven``, and yields to what the rubble does beyond the forces that the lattice knows already (``carried``): all edges
-together are one body with a matrix W in place of an inverse mass (`yields`),
+A kinematic sheet would jam plates against the structure with unlimited force: it answers to them, in one of two ways.
 
-    w' = w + W (sum J - F_carried dt)   per sub-step, w = driven at the start of the window.
+In lockstep its nodes are bodies of the contact solver, with the mass that they have in the lattice. Before every
+sub-step they are put where the lattice has them (`MEETS`), and their velocity grows by what the lattice alone would
+do; the impulses that stop them act on the lattice in the same time.
+
+Window by window the nodes move as the lattice says, and the edge of each section yields to what the rubble does beyond
+the forces that the lattice knows already (``carried``): all edges together are one body with a matrix W in place of an
+inverse mass (`yields`), which moves beside the nodes with w,
+
+    w' = w + W (sum J - F_carried dt)   per sub-step, w = 0 at the start of the window.
 
 W = G / T^2 follows from the compliance G of the lattice over a window T (`coupling.sheet_port.yielding`). An edge that
 is stopped at the start of a window takes the impulse J = W^-1 v: the mean force J / T = G^-1 v T is that under which
-the lattice stays where it is stopped. A plate caught between edge and structure is pressed with what it takes to move
-the sheet, no more; what limits the force further (crushing, failure) happens where it belongs.
+the lattice stays where it is stopped.
 """
 
 from __future__ import annotations
@@ -24,8 +29,15 @@ from rubble.compiled import compiled
 from rubble.physics import RubblePhysics
 from rubble.pointers import address
 
-#: a node of the sheet: x, z [m], and the impulse on it over a window, x, y and z [N s]
-NODE = record("x", "z", "impulse_x", "impulse_y", "impulse_z")
+#: a node of the sheet: place x, z [m]; the same where the outline of the sheet has it, relative to the foremost node of
+#: its section [m]; velocity [m/s]; what the lattice adds to it in a sub-step [m/s]; inverse mass, 0 where it moves as
+#: the lattice says [1/kg]; the impulse on it over a window [N s]
+NODE = record(
+    *("x", "z", "outline_x", "outline_z", "v_x", "v_y", "v_z", "gain_x", "gain_y", "gain_z"),
+    *("light_x", "light_y", "light_z", "impulse_x", "impulse_y", "impulse_z"),
+)
+#: what a sub-step is told of a node in lockstep, in this order
+MEETS = ("x", "z", "v_x", "v_y", "v_z", "gain_x", "gain_y", "gain_z", "light_x", "light_y", "light_z")
 ICE, SHEET_CATEGORY, STRUCTURE_CATEGORY = 1, 0b10, 0b100  #: collision type and categories, see `section`
 
 
@@ -36,7 +48,7 @@ class SheetMotion:
     x: Array  #: (m,) of the nodes at the start, decreasing [m]
     z: Array  #: (m,) middle of the thickness [m]
     front: float  #: x of the sheet's foremost point [m]
-    velocity: Array  #: (m, 2) of the nodes in x and z, mean over the window [m/s]
+    velocity: Array  #: (m, 2) of the nodes in x and z, mean over the window [m/s]; without meaning in lockstep
     thickness: float  #: [m]
     applied: tuple[float, float] = (0.0, 0.0)  #: F_carried above, x and z [N]
 
@@ -55,7 +67,7 @@ class SheetBody:
     def __init__(self, space: pymunk.Space, physics: RubblePhysics, motion: SheetMotion) -> None:
         self.physics = physics
         self.nodes = np.zeros(len(motion.x), NODE)
-        self.place, self.driven, self.applied = np.zeros(2), np.zeros(2), np.zeros(2)
+        self.place, self.applied = np.zeros(2), np.zeros(2)
         self._corners = np.zeros((0, 4, 2))
         self.enter(space)
 
@@ -81,19 +93,13 @@ class SheetBody:
         return np.column_stack([self.nodes[f"impulse_{axis}"] for axis in "xyz"])
 
     def follow(self, motion: SheetMotion) -> None:
-        """Take over the lattice's motion in a window, from its start.
-
-        The edge moves with those nodes that met rubble in the last window, weighted with the force; without contact,
-        with the foremost one.
-        """
+        """Take over the lattice's motion in a window, from its start."""
         x, z = motion.x, motion.z
-        force = np.abs(self.impulse).sum(axis=1)
-        total = float(force.sum())
-        same = len(force) == len(x) and total > 0.0
-        self.driven = force @ motion.velocity / total if same else motion.velocity[0].copy()
         self.place, self.applied = np.array([x[0], z[0]]), np.array(motion.applied, np.float64)
         self.nodes = np.zeros(len(x), NODE)
         self.nodes["x"], self.nodes["z"] = x, z
+        self.nodes["outline_x"], self.nodes["outline_z"] = x - x[0], z - z[0]
+        self.nodes["v_x"], self.nodes["v_z"] = motion.velocity.T
         corners = sheet_polygons(x, z, motion.front, motion.thickness, self.physics.slop / 2)
         self._set_shapes(corners - self.place)
 

@@ -7,7 +7,7 @@ Rows are solved one after the other, in the order in which they stand, each with
     shift     0 <= J so that overlap recedes; it moves plates without a velocity (split impulse: no energy of motion)
 
 ``most`` is what the ice carries before it crushes. A row that holds (a joint) has no bounds. The sheet's edge answers
-to an impulse in one section in all of them, by its matrix.
+to an impulse in one section in all of them, by its matrix, or with its nodes there, see `sheet`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from rubble.arrays import Array, Record
 from rubble.compiled import compiled
 from rubble.plates import Plates
-from rubble.rows import Edges, Rows, speed
+from rubble.rows import Edges, Rows, push_edge, push_sheet, sheet_speed, speed
 
 
 @compiled(nogil=True)
@@ -40,27 +40,17 @@ def _push(way: Record, a: Record, b: Record, ma: float, mb: float, j: float) -> 
 
 
 @compiled(nogil=True)
-def push_edge(yields: Array, motion: Array, e: int, x: float, z: float) -> None:
-    """An impulse (x, z) of the rubble on the sheet in section e moves the edge in all sections."""
-    for f in range(motion.shape[0]):
-        motion[f, 0] += yields[0, e, f] * x
-        motion[f, 1] += yields[1, e, f] * z
-
-
-@compiled(nogil=True)
 def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
     """Apply the impulses that the rows have kept from the last sub-step."""
     motion, inverse = plates.motion, plates.inverse_mass
     for c in range(count):
         point = rows.point[c]
-        x = z = 0.0
         for d in range(3):
             way = rows.way[c, d]
             if way.impulse != 0.0:
                 _push(way, motion[point.a], motion[point.b], inverse[point.a], inverse[point.b], way.impulse)
-                x, z = x + way.impulse * way.x, z + way.impulse * way.z
-        if point.edge >= 0:
-            push_edge(edges.yields, edges.motion, point.edge, -x, -z)
+                if point.edge >= 0:
+                    push_sheet(edges, point, way, way.impulse)
 
 
 @compiled(nogil=True)
@@ -76,7 +66,7 @@ def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float,
 
 @compiled(nogil=True)
 def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
-    """Normal impulse of one row; returns by how much it has changed."""
+    """Normal impulse of one row; ``edge``: speed of the sheet along n. Returns by how much it has changed."""
     new = n.impulse + n.mass * (n.target - speed(n, a, b) + edge)
     if point.mu >= 0.0:
         new = min(max(new, 0.0), point.most)
@@ -89,14 +79,14 @@ def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float
 
 @compiled(nogil=True)
 def _friction(
-    ways: tuple[Record, Record, Record], mu: float, a: Record, b: Record, ma: float, mb: float, x: float, z: float
+    ways: tuple[Record, Record, Record], mu: float, a: Record, b: Record, ma: float, mb: float, along: float, across: float
 ) -> tuple[float, float]:
-    """Friction of one row against an edge that moves with (x, z); returns by how much it has changed along t and s."""
+    """Friction of one row; ``along``, ``across``: speed of the sheet along t and s. Returns by how much both change."""
     n, t, s = ways
     if n.impulse == 0.0 and t.impulse == 0.0 and s.impulse == 0.0:
         return 0.0, 0.0
-    f = t.impulse + t.mass * (t.target - speed(t, a, b) + t.x * x + t.z * z)
-    g = s.impulse + s.mass * (s.target - speed(s, a, b) + s.x * x + s.z * z)
+    f = t.impulse + t.mass * (t.target - speed(t, a, b) + along)
+    g = s.impulse + s.mass * (s.target - speed(s, a, b) + across)
     if mu >= 0.0:
         size, most = np.sqrt(f * f + g * g), mu * n.impulse
         if size > most:
@@ -112,7 +102,7 @@ def _friction(
 def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> None:
     """All rows once."""
     motion, shift, inverse = plates.motion, plates.shift, plates.inverse_mass
-    moves, shifts, yields = edges.motion, edges.shift, edges.yields
+    nodes, moves, shifts, yields = edges.nodes, edges.motion, edges.shift, edges.yields
     for c in range(count):
         point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
         i, k, e = point.a, point.b, point.edge
@@ -121,18 +111,20 @@ def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> 
             if deep:
                 _shift(point, n, shift[i], shift[k], ma, mb, 0.0)
             _normal(point, n, a, b, ma, mb, 0.0)
-            _friction((n, t, s), point.mu, a, b, ma, mb, x=0.0, z=0.0)
+            _friction((n, t, s), point.mu, a, b, ma, mb, along=0.0, across=0.0)
             continue
         if deep:
             j = _shift(point, n, shift[i], shift[k], ma, mb, n.x * shifts[e, 0] + n.z * shifts[e, 1])
             if j != 0.0:
                 push_edge(yields, shifts, e, -j * n.x, -j * n.z)
-        j = _normal(point, n, a, b, ma, mb, n.x * moves[e, 0] + n.z * moves[e, 1])
+        j = _normal(point, n, a, b, ma, mb, sheet_speed(nodes, moves, point, n))
         if j != 0.0:
-            push_edge(yields, moves, e, -j * n.x, -j * n.z)
-        f, g = _friction((n, t, s), point.mu, a, b, ma, mb, x=moves[e, 0], z=moves[e, 1])
+            push_sheet(edges, point, n, j)
+        along, across = sheet_speed(nodes, moves, point, t), sheet_speed(nodes, moves, point, s)
+        f, g = _friction((n, t, s), point.mu, a, b, ma, mb, along=along, across=across)
         if f != 0.0 or g != 0.0:
-            push_edge(yields, moves, e, -f * t.x - g * s.x, -f * t.z - g * s.z)
+            push_sheet(edges, point, t, f)
+            push_sheet(edges, point, s, g)
 
 
 @compiled(nogil=True)

@@ -12,9 +12,9 @@ from rubble.compiled import compiled
 from rubble.gather import Scene, find_pairs, gather
 from rubble.joints import Joints, joint_rows
 from rubble.plates import Plates, move_all
-from rubble.rows import Rows, Surface, set_laws
+from rubble.rows import Edges, Rows, Surface, push_edge, set_laws
 from rubble.sides import Sides, side_rows
-from rubble.solver import push_edge, solve
+from rubble.solver import solve
 from rubble.water import Hulls, Water, fill_tops, plate_forces
 
 #: what went wrong: a list of pairs was too short, a contact with an unknown body, too few rows
@@ -38,8 +38,6 @@ class Sums(NamedTuple):
     """All that is summed over sub-steps."""
 
     plate: Array  #: (n, 9) `store.ON_PLATE`
-    node: Records  #: NODE of all sections with a sheet
-    offset: IntArray  #: (e + 1,) section e owns node[offset[e]:offset[e + 1]]
     books: Records  #: (1,) BOOKS
     water: Records  #: (1,) WATER_IMPULSE
     pressure: Array  #: (n, 6) of the last sub-step [N, N m]
@@ -58,9 +56,7 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
     forces, lowest = np.empty((count, 3, 6)), np.empty(count)
     for k in range(n):
         books.stepping += move_all(plates, dt)
-        for e in range(edges.place.shape[0]):
-            for d in range(2):
-                edges.place[e, d] += dt * (edges.motion[e, d] + edges.shift[e, d])
+        _move_sheet(edges, dt)
         find_pairs(scene)
         stamp = sums.counted[1] + 1
         rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
@@ -78,19 +74,40 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         outside(plates, window.hulls, forces, dt, sums.momenta)
         kick(plates, window.hulls, window.thrust, forces, sums.pressure, dt, books)
         fill_tops(plates, window.water, lowest, dt)
-        for e in range(edges.place.shape[0]):
-            push_edge(edges.yields, edges.motion, e, -dt * edges.carried[e, 0], -dt * edges.carried[e, 1])
-        kicked, kicked_edge = plates.motion.copy(), edges.motion.copy()
+        _kick_sheet(edges, dt)
+        kicked = plates.motion.copy(), edges.nodes.copy(), edges.motion.copy()
         if window.planar:
             _flatten(plates)
         solve(rows, found, plates, edges, window.iterations)
         if window.planar:
             _flatten(plates)
-        book_contacts(rows, found, kicked, kicked_edge, plates, edges, books)
-        sum_contacts(rows, found, sums.plate, sums.node, sums.offset, sums.momenta)
+        book_contacts(rows, found, kicked, plates, edges, books)
+        sum_contacts(rows, found, sums.plate, edges.nodes, sums.momenta)
         if found > 0 and 2 * found > rows.point.shape[0]:
             return k + 1
     return n
+
+
+@compiled(nogil=True)
+def _move_sheet(edges: Edges, dt: float) -> None:
+    """Nodes move with the sheet and with the edge that yields."""
+    for e in range(edges.motion.shape[0]):
+        x, z = edges.motion[e, 0] + edges.shift[e, 0], edges.motion[e, 1] + edges.shift[e, 1]
+        for k in range(edges.offset[e], edges.offset[e + 1]):
+            node = edges.nodes[k]
+            node.x += dt * (node.v_x + x)
+            node.z += dt * (node.v_z + z)
+
+
+@compiled(nogil=True)
+def _kick_sheet(edges: Edges, dt: float) -> None:
+    """Velocities after what the lattice does in a sub-step."""
+    for k in range(edges.nodes.shape[0]):
+        node = edges.nodes[k]
+        node.v_x, node.v_y, node.v_z = node.v_x + node.gain_x, node.v_y + node.gain_y, node.v_z + node.gain_z
+    for e in range(edges.motion.shape[0]):
+        if edges.yields.shape[1] > 0:
+            push_edge(edges.yields, edges.motion, e, -dt * edges.carried[e, 0], -dt * edges.carried[e, 1])
 
 
 @compiled(nogil=True)

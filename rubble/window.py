@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,12 +26,23 @@ from rubble.water import WATER_IMPULSE, potential, water_of
 BIAS = 0.9**60.0  #: share of an overlap that is left after a second: Chipmunk's
 
 
+class Run(NamedTuple):
+    """A window that has begun."""
+
+    window: Window
+    scene: Scene
+    sums: Sums
+    momentum: Array  #: (3,) with added mass, at its start [N s]
+    on_sheet: float  #: work of plates on the sheet so far [J]
+
+
 class Runner:
     """Runs windows; keeps what goes on from one to the next: rows of the last sub-step, pressure, books."""
 
     def __init__(self, physics: RubblePhysics) -> None:
         self.physics, self.water = physics, water_of(physics)
-        self.yields: tuple[dict[int, int], Array] = {}, np.zeros((2, 0, 0))
+        #: how edges yield, by the number of their section; None: sheet and rubble go in lockstep
+        self.yields: tuple[dict[int, int], Array] | None = {}, np.zeros((2, 0, 0))
         self.books, self.water_impulse = np.zeros(1, BOOKS), np.zeros(1, WATER_IMPULSE)
         self.momenta = np.zeros((3, 6))  #: that plates received since the start, see `books`
         self.planar = False  #: plates move in their x-z plane only, while initial rubble settles
@@ -42,6 +53,8 @@ class Runner:
         self._pressure: dict[int, Array] = {}
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
+        self.edges: Edges
+        self._run: Run
 
     @property
     def contacts(self) -> int:
@@ -49,45 +62,56 @@ class Runner:
         return int(self._counted[0])
 
     def advance(self, store: Store, sections: SectionTable, joints: Joints, n: int) -> None:
-        """Do ``n`` sub-steps."""
+        """Do a window of ``n`` sub-steps."""
+        self.begin(store, sections, joints)
+        self.go(n)
+        self.end(store, sections)
+
+    def begin(self, store: Store, sections: SectionTable, joints: Joints) -> None:
+        """A window begins: slices are cut anew, sums are empty."""
         renamed = sections.cut(store)
         if renamed is not None:
             self._rename(renamed)
         tables, plates = store.tables, store.plates
         tables.sums[:] = 0.0
         self.water_impulse[:] = 0
-        nodes, offset = _nodes(sections)
-        edges = self._edges(sections)
-        pressure = self._known_pressure(store)
-        sums = Sums(tables.sums, nodes, offset, self.books, self.water_impulse, pressure, self.momenta, self._counted)
-        before, sheet = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
-        scene = self._scene(store, sections, edges)
-        sides = no_sides() if self.planar else self._sides(scene, store)
-        done, window = (
-            0,
-            Window(
-                iterations=int(self.physics.iterations),
-                surface=self._surface(),
-                water=self.water,
-                hulls=tables.hulls,
-                thrust=tables.thrust,
-                sides=sides,
-                joints=joints,
-                planar=self.planar,
-            ),
+        self.edges = self._edges(sections)
+        scene = self._scene(store, sections, self.edges)
+        window = Window(
+            iterations=int(self.physics.iterations),
+            surface=self._surface(),
+            water=self.water,
+            hulls=tables.hulls,
+            thrust=tables.thrust,
+            sides=no_sides() if self.planar else self._sides(scene, store),
+            joints=joints,
+            planar=self.planar,
         )
+        pressure = self._known_pressure(store)
+        sums = Sums(tables.sums, self.books, self.water_impulse, pressure, self.momenta, self._counted)
+        before = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
+        self._run = Run(window, scene, sums, *before)
+        self.window = 0.0
+
+    def go(self, n: int) -> None:
+        """Do ``n`` sub-steps of the window that has begun. RuntimeError if their contacts cannot be found."""
+        done, run = 0, self._run
         while done < n:
-            step = advance_substeps(n - done, window, scene, *self._rows, sums)
+            step = advance_substeps(n - done, run.window, run.scene, *self._rows, run.sums)
             if step < 0:
                 raise RuntimeError(f"rubble: {WRONG[step]} in a sub-step; take out blocks that overlap")
             done += step
             self._make_room()
+        self.window += n * self.physics.substep
+
+    def end(self, store: Store, sections: SectionTable) -> None:
+        """The window ends."""
+        run = self._run
         sections.make_room()
-        _keep(sections, edges, nodes, offset)
-        self._pressure = {p.id: pressure[i] for i, p in enumerate(store.list)}
-        self.window = n * self.physics.substep
-        self.power_on_sheet = (float(self.books["on_sheet"][0]) - sheet) / self.window
-        self._balance(store, before)
+        _keep(sections, self.edges)
+        self._pressure = {p.id: run.sums.pressure[i] for i, p in enumerate(store.list)}
+        self.power_on_sheet = (float(self.books["on_sheet"][0]) - run.on_sheet) / self.window
+        self._balance(store, run.momentum)
 
     def _scene(self, store: Store, sections: SectionTable, edges: Edges) -> Scene:
         p, slices = self.physics, sections.slices
@@ -129,16 +153,18 @@ class Runner:
         return Surface(coefficient(p.mu_ice_ice), coefficient(p.mu_structure), p.restitution, bias, p.slop)
 
     def _edges(self, sections: SectionTable) -> Edges:
-        """The sheet's edges in all sections, still where there is no sheet."""
-        n, (known, yields) = len(sections.by_key), self.yields
-        edges = still_edges(n)
-        at = np.array([known.get(k, -1) for k in sections.by_key], np.int64)
-        on = np.flatnonzero(at >= 0)
-        edges.yields[:, on[:, None], on[None, :]] = yields[:, at[on][:, None], at[on][None, :]]
+        """The sheet in all sections as a window finds it."""
+        nodes, offset = _nodes(sections)
+        if self.yields is None:
+            edges = still_edges(nodes, offset, yielding=False)
+        else:
+            (known, yields), edges = self.yields, still_edges(nodes, offset, yielding=True)
+            at = np.array([known.get(k, -1) for k in sections.by_key], np.int64)
+            on = np.flatnonzero(at >= 0)
+            edges.yields[:, on[:, None], on[None, :]] = yields[:, at[on][:, None], at[on][None, :]]
         for e, section in enumerate(sections.by_key.values()):
-            if (sheet := section.sheet) is not None:
-                edges.place[e], edges.motion[e], edges.driven[e] = sheet.place, sheet.driven, sheet.driven
-                edges.carried[e], edges.body[e] = sheet.applied, sheet.address
+            if section.sheet is not None:
+                edges.carried[e], edges.body[e] = section.sheet.applied, section.sheet.address
         return edges
 
     def _known_pressure(self, store: Store) -> Array:
@@ -207,12 +233,11 @@ def _nodes(sections: SectionTable) -> tuple[Any, IntArray]:
     return nodes, np.cumsum([0, *map(len, own)], dtype=np.int64)
 
 
-def _keep(sections: SectionTable, edges: Edges, nodes: Any, offset: IntArray) -> None:
-    """Edges and nodes of the sheet as the window has left them."""
+def _keep(sections: SectionTable, edges: Edges) -> None:
+    """Nodes of the sheet as the window has left them."""
     for e, section in enumerate(sections.by_key.values()):
         if section.sheet is not None:
-            section.sheet.place, section.sheet.nodes = edges.place[e].copy(), nodes[offset[e] : offset[e + 1]].copy()
-            section.sheet.driven = edges.motion[e].copy()
+            section.sheet.nodes = edges.nodes[edges.offset[e] : edges.offset[e + 1]].copy()
 
 
 def _grown(rows: Rows, count: int) -> Rows:
