@@ -10,7 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from coupling.interface import NS, SheetEdge, SheetForces, SheetReport, SimulationError
+import numpy as np
+
+from coupling.interface import NS, Fragment, IntArray, SheetEdge, SheetForces, SheetReport, SimulationError
 from coupling.relaxation import Aitken, change, combined
 from coupling.scheduler import Scheduler, Scheme
 
@@ -48,6 +50,36 @@ class SerialExplicit:
         given = combined(GIVEN, force, 1.0 - GIVEN, self._mean)
         report = s.move_sheet(given)
         s.move_rubble(s.sheet.path(s.rubble.sections_in_use()), given)
+        return report
+
+
+class Lockstep:
+    """Sheet and rubble meet in every sub-step of the rubble: each knows where the other is and with what it presses.
+
+    The sheet's nodes are bodies of the contact solver (`coupling.sheet_port.meeting`); what stops them there acts on the
+    lattice in the same sub-step. Pieces that leave the lattice become plates when the window begins, those that leave
+    within it when it ends.
+    """
+
+    def __call__(self, s: Scheduler) -> SheetReport:
+        """One window."""
+        nodes: list[IntArray] = []
+
+        def answer(fragments: list[Fragment]) -> SheetForces:
+            if not nodes:
+                for fragment in fragments:
+                    s.hand_over(fragment)
+                edges = s.sheet.edges(s.rubble.sections_in_use())
+                s.rubble.begin(edges)
+                nodes.append(np.concatenate([np.zeros(0, np.int64), *(e.nodes for e in edges.values())]))
+            force = s.rubble.meet(s.sheet.nodes(nodes[0]))
+            on = force.any(axis=1)
+            return SheetForces(nodes[0][on], force[on])
+
+        report = s.sheet.advance(s.t_ns, s.window_ns, s.rubble.forces_on_sheet(), s.rubble_load(), answer)
+        s.rubble.end()
+        for fragment in report.fragments:
+            s.hand_over(fragment)
         return report
 
 
@@ -144,6 +176,7 @@ class SerialImplicit:
 
 
 SCHEMES: dict[str, Callable[[Iteration], Scheme]] = {
+    "lockstep": lambda _: Lockstep(),
     "serial-explicit": lambda _: SerialExplicit(),
     "parallel-explicit": lambda _: ParallelExplicit(),
     "serial-implicit": SerialImplicit,

@@ -26,7 +26,7 @@ from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release
 from lattice.grid import Array, IntArray
-from lattice.loads import Loads, keep
+from lattice.loads import Loads, Partner, keep
 from lattice.outcome import Outcome
 from lattice.reaction import Mean, between
 from lattice.state import State
@@ -63,6 +63,7 @@ class ExplicitSheet(Floe):
             engine.watch(judge)
         self._lively, self._loss_rate = True, 0.0
         self._easing = Easing(engine.grid.cells, engine.ice.sigma_t)
+        self._partner: Partner | None = None
         self.failure_times: list[float] = []  #: of all cells that failed, in order [s]
         self.failed_cells: list[int] = []  #: which they were
 
@@ -72,9 +73,30 @@ class ExplicitSheet(Floe):
     def set_window(self, dt: float) -> None:
         """As `Floe.set_window`; the sub-steps are cut anew."""
         if dt != self.dt:
-            self.dt = dt
-            self.engine.set_window(dt)
-            self.block = max(1, int(self._contact_time / self.engine.dt))
+            self._cut_window(dt)
+
+    def join(self, partner: Partner) -> None:
+        """From now on this partner is met; its load is to be among those of every window."""
+        self._partner = partner
+        self._cut_window(self.dt)
+
+    def _cut_window(self, dt: float) -> None:
+        self.dt = dt
+        if self._partner is not None:
+            self.engine.parts = max(1, round(dt / self._partner.every))
+        self.engine.set_window(dt)
+        self.block = max(1, int(self._contact_time / self.engine.dt))
+
+    def _meet(self, w: Window, done: int) -> int:
+        """Sub-steps to the next meeting with the partner, which is met where one is due."""
+        if self._partner is None:
+            return self.engine.sub_steps
+        part = self.engine.sub_steps // self.engine.parts
+        if done % part == 0:
+            self.state = self.engine.moving(self.state, self.present)
+            self._partner.meet(w.t + done * self.engine.dt)
+            w.keep(self.present)
+        return part - done % part
 
     def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
         """As `Floe._advance`; `release` is called with the state of that instant.
@@ -113,7 +135,7 @@ class ExplicitSheet(Floe):
     def _march(self, w: Window, done: int) -> Marched:
         """Sub-steps to the next evaluation of the contact, or to a failure."""
         e, contact = self.engine, w.contact
-        steps = min(self.block, e.sub_steps - done)
+        steps = min(self.block, e.sub_steps - done, self._meet(w, done))
         touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
         _, before = e.displacement()
         out = e.march(steps, w.load, touch, self._lively)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -29,6 +30,24 @@ class NodeLoad:
 
 
 Loads = Sequence[NodeLoad]
+
+
+class Partner(Protocol):
+    """What presses on a sheet in answer to how it moves, and is asked more often than once per window."""
+
+    @property
+    def every(self) -> float:
+        """Time between two meetings [s]; windows are a whole number of it."""
+        ...
+
+    @property
+    def load(self) -> NodeLoad:
+        """Forces until the next meeting; one of the loads of the window."""
+        ...
+
+    def meet(self, t: float) -> None:
+        """Writes new forces into ``load``; the state of the sheet is that of time t, see `ExplicitEngine.moving`."""
+        ...
 
 
 def keep(loads: Loads, present: BoolArray) -> None:

@@ -32,6 +32,7 @@ from coupling.interface.frame import Frame
 from coupling.interface.load import Load, SheetMotion
 from coupling.interface.rubble import BlockTable, HandOver, RubbleParticipant
 from coupling.interface.sheet import (
+    Answer,
     ContactForces,
     Event,
     Fragment,
@@ -46,6 +47,7 @@ from coupling.interface.units import NS, PHASES, Array, BoolArray, IntArray, Pha
 __all__ = [
     "NS",
     "PHASES",
+    "Answer",
     "Array",
     "BlockTable",
     "BoolArray",

@@ -73,7 +73,7 @@ class HandOver:
 class RubbleParticipant(Protocol):
     """Broken ice. `coupling.rubble_port.RubblePort` is the one of this project, `NoRubble` the one that takes it away.
 
-    Per window first `add` for each fragment of it, then `set_sheet`, then `advance`; afterwards everything else speaks
+    Per window first `add` for each fragment of it, then `set_sheet`, then `advance` (in lockstep `begin`, `meet`, `end`); then everything else speaks
     of the window that has just ended. Blocks move from the state that their ice had at the start of the window.
     """
 
@@ -121,6 +121,18 @@ class RubbleParticipant(Protocol):
         ``carried`` are the forces of the rubble that the sheet already answers to in this motion: the edges yield to
         what comes on top of them, by their ``compliance`` (2, k, k) [m/N] after a window.
         """
+        ...
+
+    def begin(self, edges: dict[int, SheetEdge]) -> None:
+        """A window in lockstep begins; the sheet is as in `set_sheet`, but for its velocity, which has no meaning."""
+        ...
+
+    def meet(self, nodes: Array) -> Array:
+        """One sub-step of it: ``nodes`` (m, 11) of the edges as `SheetParticipant.nodes` has them; forces (m, 3) [N]."""
+        ...
+
+    def end(self) -> None:
+        """It ends; as after `advance`."""
         ...
 
     def advance(self, window_ns: int) -> None:

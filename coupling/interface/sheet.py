@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -115,6 +115,11 @@ class SheetReport:
     hinged: Array | None = None  #: (3,) part of the load that hinged pieces give; None: there are none [N]
 
 
+#: The rubble in lockstep: takes the fragments that have left since the window began, if it has not got them yet, moves on
+#: by one sub-step, and gives the forces in it.
+Answer = Callable[[list[Fragment]], SheetForces]
+
+
 class SheetParticipant(Protocol):
     """The unbroken ice. `coupling.sheet_port.SheetPort` is the one of this project.
 
@@ -142,12 +147,25 @@ class SheetParticipant(Protocol):
         """Mean power of the rubble's forces on the sheet over the window, in the fixed frame [W]."""
         ...
 
-    def advance(self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array) -> SheetReport:
+    def advance(
+        self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array, answer: Answer | None = None
+    ) -> SheetReport:
         """Moves the sheet from ``t_ns`` over a window under the rubble's mean forces.
 
         ``rubble_load`` (3,) is the blocks' load on the structure [N], which events add to the sheet's own. Forces on
-        nodes that have left act on nothing. SimulationError if no motion is found.
+        nodes that have left act on nothing. In lockstep ``answer`` is asked for the forces instead, once for every
+        sub-step of the rubble; the report is then without the fragments that it was given. SimulationError if no motion
+        is found.
         """
+        ...
+
+    def lockstep(self, every: float) -> None:
+        """From now on windows are met in steps of ``every`` [s]. SimulationError if the sheet cannot do that."""
+        ...
+
+    def nodes(self, nodes: IntArray) -> Array:
+        """Nodes at a meeting in lockstep (m, 11): place x, z [m]; velocity; what the lattice will add to it by the next
+        meeting [m/s]; inverse mass [1/kg]; the last three in x, y, z."""
         ...
 
     def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:

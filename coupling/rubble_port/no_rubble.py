@@ -31,6 +31,16 @@ class NoRubble:
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """Nothing is there to meet the sheet."""
 
+    def begin(self, edges: dict[int, SheetEdge]) -> None:
+        """Nothing is there to meet the sheet."""
+
+    def meet(self, nodes: Array) -> Array:
+        """It presses on nothing."""
+        return np.zeros((len(nodes), 3))
+
+    def end(self) -> None:
+        """Nothing has moved."""
+
     def advance(self, window_ns: int) -> None:
         """Nothing moves."""
 

@@ -78,6 +78,7 @@ class RubblePort:
         self._edges: dict[int, SheetEdge] = {}
         self._compliance = np.zeros((2, 0, 0))
         self._forces = SheetForces.none()
+        self._crushed = 0.0  #: mass when the window began [kg]
         self._arrivals = Arrivals(physics)
 
     def add(self, fragment: Fragment) -> HandOver:
@@ -90,24 +91,53 @@ class RubblePort:
 
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """The sheet's edges for the coming window; ``carried`` are the forces that it already answers to in them."""
+        self._set_edges(edges, carried)
+        self._compliance = compliance
+
+    def _set_edges(self, edges: dict[int, SheetEdge], carried: SheetForces) -> None:
         for key in set(self._edges) - set(edges):
             self.layer.remove_sheet(key)
-        self._edges, self._compliance = edges, compliance
+        self._edges = edges
         for key, e in edges.items():
             motion = SheetMotion(e.x, e.z, e.front, e.velocity, self.physics.thickness, _on_edge(carried, e))
             self.layer.set_sheet(key, motion)
 
+    def begin(self, edges: dict[int, SheetEdge]) -> None:
+        """A window in lockstep begins."""
+        self._set_edges(dict(sorted(edges.items())), SheetForces.none())
+        self.layer.set_yields([], None)
+        self._crushed = self.layer.crushed.mass
+        self.layer.begin()
+
+    def meet(self, nodes: Array) -> Array:
+        """One sub-step against the nodes of the edges; forces on them (m, 3) [N]."""
+        try:
+            return self.layer.meet(nodes)
+        except RuntimeError as error:
+            raise SimulationError(str(error)) from error
+
+    def end(self) -> None:
+        """The window ends."""
+        try:
+            self.layer.end()
+        except RuntimeError as error:
+            raise SimulationError(str(error)) from error
+        self._take_stock()
+
     def advance(self, window_ns: int) -> None:
         """Moves all blocks over a window and sums their impulses on the sheet."""
-        crushed, n = self.layer.crushed.mass, round(window_ns / NS / self.physics.substep)
+        self._crushed, n = self.layer.crushed.mass, round(window_ns / NS / self.physics.substep)
         yields = self._compliance / (n * self.physics.substep) ** 2  # see `rubble.sheet`
         self.layer.set_yields(list(self._edges), yields)
         try:
             self.layer.advance(n)
         except RuntimeError as error:
             raise SimulationError(str(error)) from error
-        if self.layer.crushed.mass > crushed:
-            self.on_crushed(self.layer.crushed.mass - crushed)
+        self._take_stock()
+
+    def _take_stock(self) -> None:
+        if self.layer.crushed.mass > self._crushed:
+            self.on_crushed(self.layer.crushed.mass - self._crushed)
         self.take_forces()
 
     def take_forces(self) -> None:

@@ -11,9 +11,9 @@ from coupling.contact import ContactLaw, OverlapContact
 from coupling.contact_friction import friction_part
 from coupling.interface import (
     NS,
+    Answer,
     Array,
     ContactForces,
-    Fragment,
     IntArray,
     Load,
     Restore,
@@ -28,11 +28,14 @@ from coupling.interface import (
 from coupling.sheet_port.energy import RUBBLE, energy_terms
 from coupling.sheet_port.fragments import fragment
 from coupling.sheet_port.front import Front
+from coupling.sheet_port.leaving import Leaving
+from coupling.sheet_port.meeting import Meeting
 from coupling.sheet_port.motion import Motion
 from coupling.sheet_port.underside import Underside
 from coupling.sheet_port.view import view
 from coupling.sheet_port.watch import Watch
 from lattice.cracks.hinges import Hinges
+from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
 from lattice.loads import NodeLoad
 from lattice.memory import recall, remember
@@ -66,30 +69,52 @@ class SheetPort:
         self.initial_mass = ice.rho_i * ice.h * float(sheet.grid.area.sum())
         #: mean power of the rubble's forces on the sheet over the last window, in the fixed frame [W]
         self.power = 0.0
-        self._left: list[tuple[Fragment, bool]] = []  #: in this window; whether at the structure
+        self.meeting: Meeting | None = None  #: in lockstep
+        self._leaving = Leaving()
         sheet.energy.friction_of = partial(
             friction_part, structure, law.friction, self.contact.face, self.contact.touching_z
         )
 
     # ---- one window -------------------------------------------------------------------------------------------
 
-    def advance(self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array) -> SheetReport:
+    def lockstep(self, every: float) -> None:
+        """From now on windows are sub-steps of the rubble that both do together, ``every`` so many seconds.
+
+        SimulationError where the sheet is not on the explicit engine.
+        """
+        if not isinstance(self.sheet, ExplicitSheet):
+            raise SimulationError(
+                "coupling.scheme = 'lockstep' needs the explicit engine: set fracture.cracks = 'closing' or "
+                "fracture.propagation = 'dynamic', or another coupling.scheme"
+            )
+        self.meeting = Meeting(self.sheet, self.motion, every)
+        self.sheet.join(self.meeting)
+
+    def nodes(self, nodes: IntArray) -> Array:
+        """As `SheetParticipant.nodes`."""
+        return np.zeros((0, 11)) if self.meeting is None else self.meeting.nodes(nodes)
+
+    def advance(
+        self, t_ns: int, window_ns: int, rubble: SheetForces, rubble_load: Array, answer: Answer | None = None
+    ) -> SheetReport:
         """Moves the sheet over a window under the rubble's mean forces; ``rubble_load`` (3,) is for the events only."""
-        t, self._left = t_ns / NS, []
+        t = t_ns / NS
+        self._leaving.begin()
         self.motion.begin(t)
         self.sheet.set_window(window_ns / NS)
         parts = self.sheet.parts
         try:
-            out = self.sheet.advance(t, [self._rubble(rubble), *self._others(t)], self.contact, self._release)
+            pressing = self._rubble(rubble) if self.meeting is None else self._meet(answer)
+            out = self.sheet.advance(t, [pressing, *self._others(t)], self.contact, self._release)
         except (StepError, FloatingPointError) as error:
             raise SimulationError(f"t = {t:.3f} s: {error}") from error
         load = -out.contact_mean.sum(axis=0)
         self.motion.t = (t_ns + window_ns) / NS
-        self.power = self._power(rubble)
+        self.power = self._power(rubble, window_ns / NS)
         contact = self.front.forces(out)
         self.front.crush()
         hinges = self.sheet.hinges
-        events = self.watch.window(out, parts, self._left, load, rubble_load)
+        events = self.watch.window(out, parts, self._leaving.pieces, load, rubble_load)
         events += self.watch.cracks(hinges, load + rubble_load)
         r = out.reaction
         budget = {
@@ -100,17 +125,20 @@ class SheetPort:
             "staggering": r.applied.get(RUBBLE, (0.0, 0.0)),
         }
         others = {name: pair for name, pair in r.applied.items() if name != RUBBLE}
-        return SheetReport(load, [f for f, _ in self._left], events, budget, others, contact, _hinged(contact, hinges))
+        return SheetReport(load, self._leaving.late(self.motion.t), events, budget, others, contact, _hinged(contact, hinges))
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""
-        self._left.append(
-            (
-                fragment(self.sheet, self.motion, self.front, nodes),
-                bool(np.isin(nodes, self.contact.nodes).any()),
-            )
-        )
+        touching = bool(np.isin(nodes, self.contact.nodes).any())
+        self._leaving.add(fragment(self.sheet, self.motion, self.front, nodes), self.motion.t, touching=touching)
         self.front.renew()
+
+    def _meet(self, answer: Answer | None) -> NodeLoad:
+        """The load of a window in lockstep."""
+        assert self.meeting is not None
+        if answer is not None:
+            self.meeting.answer = lambda: answer(self._leaving.come())
+        return self.meeting.load
 
     def _rubble(self, rubble: SheetForces) -> NodeLoad:
         """The rubble's forces on all nodes."""
@@ -133,11 +161,13 @@ class SheetPort:
             out.append(NodeLoad(load.name, force[:, :2].copy(), force_q))
         return out
 
-    def _power(self, rubble: SheetForces) -> float:
+    def _power(self, rubble: SheetForces, window: float) -> float:
         """Power of the forces on the nodes that are still in the lattice, by their displacement in the window [W]."""
+        if self.meeting is not None:
+            return self.meeting.power(window)
         on = self.sheet.present[rubble.nodes]
         displacement = self.motion.displacement(rubble.nodes[on])
-        return float((rubble.force[on] * displacement).sum()) / self.motion.window
+        return float((rubble.force[on] * displacement).sum()) / window
 
     def rest_under(self, rubble: SheetForces) -> None:
         """Starts the run in equilibrium with rubble that lies under the sheet, its edge just touching the structure."""
@@ -147,6 +177,8 @@ class SheetPort:
             raise SimulationError(f"{error}: give less initial rubble (rubble.initial_volume)") from error
         self.front.set_back()
         self.motion.begin(0.0)
+        if self.meeting is not None:
+            self.meeting.take(rubble)
 
     def save(self) -> Restore:
         """All of the sheet between two windows."""

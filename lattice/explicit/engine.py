@@ -91,13 +91,14 @@ class ExplicitEngine(Engine):
             )
         self.damping = damping
         self._judge: Judge = combined_tension
+        self.parts = 1  #: equal parts of a window that are whole numbers of sub-steps
         self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
         self.set_window(window)
 
     def set_window(self, window: float) -> None:
         """Cuts windows of this length [s] from the next `start` on."""
         self.window = window
-        self.sub_steps = math.ceil(window / (self._longest or SHARE_OF_CRITICAL * self.critical))
+        self.sub_steps = self.parts * math.ceil(window / self.parts / (self._longest or SHARE_OF_CRITICAL * self.critical))
         self.allocate(window / self.sub_steps)
 
     def watch(self, judge: Judge) -> None:
@@ -164,6 +165,17 @@ class ExplicitEngine(Engine):
             np.where(on, x[:, 2:], old.q),
             np.where(on, x_dot[:, :2], old.u_dot),
             np.where(on, x_dot[:, 2:], old.q_dot),
+        )
+
+    def moving(self, old: State, present: BoolArray) -> State:
+        """The state now with the velocity of half a sub-step ago; nodes that have left keep theirs."""
+        u, q = self.displacement()
+        v, on = self.get(self.motion.v), present[:, None]
+        return State(
+            np.where(on, u, old.u),
+            np.where(on, q, old.q),
+            np.where(on, v[:, :2], old.u_dot),
+            np.where(on, v[:, 2:], old.q_dot),
         )
 
     def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
