@@ -1,15 +1,15 @@
 """Where the energy of the rubble goes, sub-step by sub-step; exact for what the solver does.
 
 A sub-step moves every plate by (v_0 + b) dt, b the shift that takes out overlap, then kicks it with its force F and
-solves the contacts: v' = v_0 + F dt / M, v_1 = v' + sum J / M. Kinetic energy is a square, so in the sum over plates
+solves the contacts: v_1 = v_0 + (F dt + sum J) / M. Kinetic energy is a square, so in the sum over plates
 
-    forces    F dt . (v_0 + v') / 2 = F . v_0 dt + (F dt)^2 / 2 M
-    contacts  J . (u' + u_1) / 2 each, u the velocity of its point
+    forces    F dt . (v_0 + v_1) / 2 = F . v_0 dt + F dt . (v_1 - v_0) / 2
+    contacts  J . (u_0 + u_1) / 2 each, u the velocity of its point
 
 whatever the order in which the solver has found the impulses J. F . v_0 is the power of weight, water and drag. The
-second part of the kick, and that the pressure is taken at the end of the way and not all along it, come from the step
-being finite: *stepping*, as is what turning with a constant angular momentum does. The shift b dt moves a plate against
-its weight and the pressure without any velocity: *correction*. M counts the added mass.
+second part, and that the pressure is taken at the end of the way and not all along it, come from the step being finite:
+*stepping*, as is what turning with a constant angular momentum does; at rest it is zero. The shift b dt moves a plate
+against its weight and the pressure without any velocity: *correction*. M counts the added mass.
 """
 
 from __future__ import annotations
@@ -95,26 +95,34 @@ def kick(plates: Plates, hulls: Hulls, thrust: Array, forces: Array, pressure: A
         x = world[i, 0, 0] * tx + world[i, 0, 1] * ty + world[i, 0, 2] * tz
         y = world[i, 1, 0] * tx + world[i, 1, 1] * ty + world[i, 1, 2] * tz
         z = world[i, 2, 0] * tx + world[i, 2, 1] * ty + world[i, 2, 2] * tz
-        books.stepping += 0.5 * dt * dt * (m * (fx * fx + fy * fy + fz * fz) + tx * x + ty * y + tz * z)
         v.x, v.y, v.z = v.x + dt * m * fx, v.y + dt * m * fy, v.z + dt * m * fz
         v.a, v.b, v.c = v.a + dt * x, v.b + dt * y, v.c + dt * z
+
+
+@compiled(nogil=True)
+def book_step(forces: Array, before: Records, plates: Plates, dt: float, books: Record) -> None:
+    """Adds what the whole forces (n, 0, 6) that `kick` has left do for the change of the motion since ``before``."""
+    total = 0.0
+    for i in range(plates.moved.shape[0] - 1):
+        total += _power(forces, i, 0, plates.motion[i]) - _power(forces, i, 0, before[i])
+    books.stepping += 0.5 * dt * total
 
 
 @compiled(nogil=True)
 def book_contacts(
     rows: Rows,
     count: int,
-    kicked: tuple[Records, Records, Array],
+    before: tuple[Records, Records, Array],
     plates: Plates,
     edges: Edges,
     books: Record,
 ) -> None:
     """Adds what each contact of a sub-step takes.
 
-    ``kicked``: the motions of plates (n + 1,), of nodes of the sheet and of edges (e, 2) before the solver.
+    ``before``: the motions of plates (n + 1,), of nodes of the sheet and of edges (e, 2) before forces and contacts.
     """
     motion, nodes, moves = plates.motion, edges.nodes, edges.motion
-    plates_before, nodes_before, moves_before = kicked
+    plates_before, nodes_before, moves_before = before
     for c in range(count):
         point = rows.point[c]
         i, k = point.a, point.b

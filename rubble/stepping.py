@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rubble.arrays import Array, IntArray, Records
-from rubble.books import book_contacts, kick, outside, sum_contacts
+from rubble.books import book_contacts, book_step, kick, outside, sum_contacts
 from rubble.compiled import compiled
 from rubble.gather import Scene, find_pairs, gather
 from rubble.joints import Joints, joint_rows
@@ -72,16 +72,17 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         plate_forces(plates, window.hulls, window.water, forces, lowest)
         _sum_water(forces, dt, sums.water)
         outside(plates, window.hulls, forces, dt, sums.momenta)
+        before = plates.motion.copy(), edges.nodes.copy(), edges.motion.copy()
         kick(plates, window.hulls, window.thrust, forces, sums.pressure, dt, books)
         fill_tops(plates, window.water, lowest, dt)
         _kick_sheet(edges, dt)
-        kicked = plates.motion.copy(), edges.nodes.copy(), edges.motion.copy()
         if window.planar:
             _flatten(plates)
         solve(rows, found, plates, edges, window.iterations)
         if window.planar:
             _flatten(plates)
-        book_contacts(rows, found, kicked, plates, edges, books)
+        book_step(forces, before[0], plates, dt, books)
+        book_contacts(rows, found, before, plates, edges, books)
         sum_contacts(rows, found, sums.plate, edges.nodes, sums.momenta)
         if found > 0 and 2 * found > rows.point.shape[0]:
             return k + 1
