@@ -49,7 +49,7 @@ def build(scenario: Scenario) -> Scheduler:
     contact = CONTACTS[scenario.contact.model]
     port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
-    if scenario.coupling.scheme == "lockstep" and scenario.rubble.enabled:
+    if scenario.scheme == "lockstep" and scenario.rubble.enabled:
         port.lockstep(scenario.rubble.substep)
     ledger = Ledger(port.initial_mass)
     if isinstance(rubble, RubblePort):
@@ -64,7 +64,7 @@ def build(scenario: Scenario) -> Scheduler:
         rubble,
         ledger,
         scenario.window_ns,
-        SCHEMES[c.scheme](iteration),
+        SCHEMES[scenario.scheme](iteration),
         build_steering(scenario),
         scenario.duration_ns,
     )
@@ -168,6 +168,8 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         filling_time=r.filling_time,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,
         current=scenario.water.current or (0.0, 0.0),
+        flexural_strength=flexural_strength(scenario),
+        breaking_time=breaking_time(scenario),
     )
     pitch = r.columns_per_section * grid.d
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
@@ -180,6 +182,19 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         domain=domain,
         threads=r.threads,
     )
+
+
+def flexural_strength(scenario: Scenario) -> float:
+    """At which pieces break again [Pa]."""
+    r, i = scenario.rubble, scenario.ice
+    known = [s for s in (r.flexural_strength, i.flexural_strength, i.tensile_strength) if s is not None]
+    return float(known[0]) if r.breaks_again else math.inf
+
+
+def breaking_time(scenario: Scenario) -> float:
+    """Over which the loads that bend a piece are averaged [s]: half the time of gravity waves as long as it is thick."""
+    given: float | None = scenario.rubble.breaking_time
+    return 0.5 * math.sqrt(scenario.ice.thickness / scenario.water.gravity) if given is None else given
 
 
 def run_info(scenario: Scenario) -> RunInfo:

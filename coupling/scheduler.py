@@ -76,7 +76,7 @@ class Scheduler:
             self.sheet.view(),
             self.rubble.blocks(),
             load,
-            tuple(report.events),
+            (*report.events, *self.rubble.events(self.t_ns, load.sum(axis=0))),
             books,
             budget,
             report.contact,

@@ -56,9 +56,9 @@ class SerialExplicit:
 class Lockstep:
     """Sheet and rubble meet in every sub-step of the rubble: each knows where the other is and with what it presses.
 
-    The sheet's nodes are bodies of the contact solver (`coupling.sheet_port.meeting`); what stops them there acts on the
-    lattice in the same sub-step. Pieces that leave the lattice become plates when the window begins, those that leave
-    within it when it ends.
+    The sheet's nodes are bodies of the contact solver (`coupling.sheet_port.meeting`); what stops them there acts on
+    the lattice in the same sub-step. Pieces that leave the lattice become plates when the window begins, those that
+    leave within it when it ends.
     """
 
     def __call__(self, s: Scheduler) -> SheetReport:

@@ -31,6 +31,7 @@ def energy_terms(layer: RubbleLayer) -> dict[str, float]:
         **pairs,
         "stepping_loss": -books["stepping"],
         "correction_loss": -books["correction"],
+        "breaking_again_loss": layer.runner.broken,
         "crushed_energy_loss": layer.crushed.energy,
         "cleared_energy_loss": layer.gone.energy,
     }

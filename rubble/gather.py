@@ -13,7 +13,7 @@ from rubble.compiled import compiled
 from rubble.cut import nearest
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
-from rubble.rows import ICE, SHEET, STRUCTURE, Edges, Rows, locate, set_arms, set_way
+from rubble.rows import CRUSHES, ICE, SHEET, STRUCTURE, Edges, Rows, locate, set_arms, set_way
 from rubble.slices import Pieces, Slices
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
@@ -192,7 +192,7 @@ def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple
 
 @compiled(nogil=True)
 def _on_sheet(edges: Edges, section: int, point: Record, nx: float, nz: float) -> float:
-    """By how much a contact with the sheet is deeper than with its outline, whose nodes have moved since it was made."""
+    """By how much a contact with the sheet is deeper than with its outline: nodes have moved since that was made."""
     nodes, first = edges.nodes, edges.offset[section]
     locate(point, nodes, first, edges.offset[section + 1])
     foremost, f, r, w = nodes[first], nodes[point.front], nodes[point.rear], point.weight
@@ -234,15 +234,21 @@ def _law(scene: Scene, rows: Rows, start: int, end: int) -> None:
 
 @compiled(nogil=True)
 def _first_guess(rows: Rows, start: int, end: int, old: Rows, kept: int, stamp: int) -> None:
-    """Impulses of the same points one sub-step ago."""
+    """Impulses of the same points one sub-step ago; how deep a new point has met is as at the others of its pair."""
     first = (kept & 0xFFFFFF) - 1 if kept >> 24 == stamp - 1 else -1
     for c in range(start, end):
-        own, at = rows.point[c], -1
+        own, at, met = rows.point[c], -1, -1.0
         if first >= 0:
             for o in range(first, min(first + 2, old.point.shape[0])):
                 was = old.point[o]
-                if was.slot_a == own.slot_a and was.slot_b == own.slot_b and was.feature == own.feature:
-                    at = o
-        own.met = old.point[at].met if at >= 0 else (0.0 if own.kind == STRUCTURE else np.inf)
+                if was.slot_a == own.slot_a and was.slot_b == own.slot_b:
+                    met = max(met, was.met)
+                    if was.feature == own.feature:
+                        at = o
+        if at >= 0:
+            own.met = old.point[at].met
+        else:
+            own.met = met if met >= 0.0 else (0.0 if own.kind == STRUCTURE else np.inf)
+        own.crushes = 1 if at >= 0 and old.way[at, 0].impulse >= CRUSHES * old.point[at].most else 0
         for d in range(3):
             rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rubble import table
 from rubble.arrays import Array, rows
+from rubble.breaking import Break
 from rubble.cut import Solids, open_water
 from rubble.domain import Domain
 from rubble.geometry import overlap_area
@@ -56,6 +57,7 @@ class RubbleLayer:
         self.cleared: list[int] = []  #: numbers of the plates that have left, in order
         self.gone = Lost()  #: what they took along
         self.crushed = Lost()  #: what was cut off plates
+        self.breaks: list[Break] = []  #: in the last window
         self.time = 0.0  #: [s]
 
     def connect_like(self, other: RubbleLayer) -> None:
@@ -198,6 +200,7 @@ class RubbleLayer:
         """It ends."""
         self.runner.end(self.store, self.table_of_sections)
         self.runner.after(self.store, self.table_of_sections, self.time)
+        self.breaks = self.runner.break_plates(self.store)
         self._clear()
 
     def set_form_drag(self, coefficient: float) -> None:

@@ -37,6 +37,8 @@ class RubblePhysics:
     filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
     backfill_level: float = 0.0  #: height of the water on the tops, <= 0 [m]
     contact_strength: float = inf  #: pressure at which a contact crushes [Pa]
+    flexural_strength: float = inf  #: bending stress at which a plate breaks in two [Pa]
+    breaking_time: float = 0.2  #: over which the loads that bend it are averaged [s]
     current: tuple[float, float] = (0.0, 0.0)  #: velocity of the water along x and y [m/s]
 
     def __post_init__(self) -> None:
@@ -82,7 +84,7 @@ class RubblePhysics:
         return 1.0 / self.filling_time if self.backfill == "filling" else 0.0
 
 
-_MAY_BE_INFINITE = ("contact_strength",)
+_MAY_BE_INFINITE = ("contact_strength", "flexural_strength")
 _POSITIVE = (
     "rho_i",
     "rho_w",
@@ -92,4 +94,6 @@ _POSITIVE = (
     "substep",
     "filling_time",
     "contact_strength",
+    "flexural_strength",
+    "breaking_time",
 )

@@ -17,17 +17,19 @@ from rubble.plates import Plates
 
 ICE, STRUCTURE, SHEET, JOINT = 0, 1, 2, 3  #: kinds of rows
 KINDS = ("ice", "structure", "sheet")
+CRUSHES = 1.0 - 1e-9  #: share of the greatest impulse from which a contact crushes
 HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 
 #: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
 #: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left [m]; plates a and b;
-#: section whose sheet is end a, else -1; kind, see above; slices a and b, and which point of theirs it is; of a sheet
+#: section whose sheet is end a, else -1; kind, see above; slices a and b, and which point of theirs it is; whether
+#: it crushed in the sub-step before; of a sheet
 #: the nodes before and behind the point, the weight of the one before, and the height of the line of nodes over the
 #: point by their distance
 POINT = record(
     *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met", "weight", "lever"),
-    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature", "front", "rear"),
+    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature", "crushes", "front", "rear"),
 )
 #: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit
 #: of relative speed moves [kg]; impulse [N s]; speed of b against a that it goes for [m/s]
@@ -142,9 +144,9 @@ def push_sheet(edges: Edges, point: Record, way: Record, j: float) -> None:
 def _lightness(edges: Edges, point: Record, x: float, y: float, z: float) -> float:
     """Speed of the sheet's end of a row along (x, y, z) for a unit impulse there."""
     f, r, w, e = edges.nodes[point.front], edges.nodes[point.rear], point.weight, point.edge
-    u, l = 1.0 - w, point.lever * x
+    u, couple = 1.0 - w, point.lever * x
     total = w * w * (f.light_x * x * x + f.light_y * y * y) + u * u * (r.light_x * x * x + r.light_y * y * y)
-    total += f.light_z * (w * z + l) ** 2 + r.light_z * (u * z - l) ** 2
+    total += f.light_z * (w * z + couple) ** 2 + r.light_z * (u * z - couple) ** 2
     if edges.yields.shape[1] > 0:
         total += x * x * edges.yields[0, e, e] + z * z * edges.yields[1, e, e]
     return float(total)
@@ -215,6 +217,5 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
         point.mu = mu
         n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
         over = max(point.depth - surface.slop, 0.0)
-        crushing = n.impulse >= point.most * (1.0 - 1e-9)  # in the sub-step before
-        point.met = over if crushing else min(point.met, over) * (1.0 - dt / GIVES_WAY)
+        point.met = over if point.crushes else min(point.met, over) * (1.0 - dt / GIVES_WAY)
         point.shift_speed = surface.bias * (over - point.met) / dt

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubble.arrays import Array, Record
+from rubble.arrays import Record
 from rubble.compiled import compiled
 from rubble.plates import Plates
 from rubble.rows import Edges, Rows, push_edge, push_sheet, sheet_speed, speed
@@ -79,11 +79,18 @@ def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float
 
 @compiled(nogil=True)
 def _friction(
-    ways: tuple[Record, Record, Record], mu: float, a: Record, b: Record, ma: float, mb: float, along: float, across: float
+    ways: tuple[Record, Record, Record],
+    mu: float,
+    a: Record,
+    b: Record,
+    ma: float,
+    mb: float,
+    along: float,
+    across: float,
 ) -> tuple[float, float]:
     """Friction of one row; ``along``, ``across``: speed of the sheet along t and s. Returns by how much both change."""
     n, t, s = ways
-    if n.impulse == 0.0 and t.impulse == 0.0 and s.impulse == 0.0:
+    if mu >= 0.0 and n.impulse == 0.0 and t.impulse == 0.0 and s.impulse == 0.0:
         return 0.0, 0.0
     f = t.impulse + t.mass * (t.target - speed(t, a, b) + along)
     g = s.impulse + s.mass * (s.target - speed(s, a, b) + across)

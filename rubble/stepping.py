@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rubble.arrays import Array, IntArray, Records
+from rubble.bending import Loaded, sum_bending
 from rubble.books import book_contacts, book_step, kick, outside, sum_contacts
 from rubble.compiled import compiled
 from rubble.gather import Scene, find_pairs, gather
@@ -31,6 +32,7 @@ class Window(NamedTuple):
     thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
     sides: Sides
     joints: Joints
+    loaded: Loaded
     planar: bool  #: plates keep their y, and do not roll or yaw
 
 
@@ -84,6 +86,7 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         book_step(forces, before[0], plates, dt, books)
         book_contacts(rows, found, before, plates, edges, books)
         sum_contacts(rows, found, sums.plate, edges.nodes, sums.momenta)
+        sum_bending(rows, found, plates, window.loaded)
         if found > 0 and 2 * found > rows.point.shape[0]:
             return k + 1
     return n

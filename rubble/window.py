@@ -7,14 +7,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rubble.arrays import Array, IntArray
-from rubble.books import BOOKS
+from rubble.books import BOOKS, SHIFT
+from rubble.breaking import Break, Breaking, part
 from rubble.friction import coefficient
 from rubble.gather import Scene
 from rubble.joints import Joints
 from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
-from rubble.plates import kinetic
+from rubble.plates import kinetic, momenta
 from rubble.rows import Edges, Rows, Surface, room, still_edges
 from rubble.sections import SectionTable
 from rubble.sheet import NODE
@@ -53,6 +54,8 @@ class Runner:
         self._pressure: dict[int, Array] = {}
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
+        self.breaking = Breaking(physics)
+        self.broken = 0.0  #: energy that plates have lost by breaking again [J]
         self.edges: Edges
         self._run: Run
 
@@ -85,6 +88,7 @@ class Runner:
             thrust=tables.thrust,
             sides=no_sides() if self.planar else self._sides(scene, store),
             joints=joints,
+            loaded=self.breaking.begin(store),
             planar=self.planar,
         )
         pressure = self._known_pressure(store)
@@ -112,6 +116,21 @@ class Runner:
         self._pressure = {p.id: run.sums.pressure[i] for i, p in enumerate(store.list)}
         self.power_on_sheet = (float(self.books["on_sheet"][0]) - run.on_sheet) / self.window
         self._balance(store, run.momentum)
+
+    def break_plates(self, store: Store) -> list[Break]:
+        """Parts the plates that break at the end of the window; none do while initial rubble settles."""
+        if self.planar:
+            return []
+        breaks = []
+        for plate, worst in self.breaking.end(store, self._run.window.loaded, self.window):
+            energy, carried = self.energy_of(plate), carried_by(store)
+            found = part(store, plate, worst)
+            if found is not None:
+                new, told = found
+                self.broken += energy - sum(self.energy_of(p) for p in new)
+                self.momenta[SHIFT] += carried_by(store) - carried
+                breaks.append(told)
+        return breaks
 
     def _scene(self, store: Store, sections: SectionTable, edges: Edges) -> Scene:
         p, slices = self.physics, sections.slices
@@ -223,6 +242,11 @@ class Runner:
         moving, resting = self.energies(alone)
         plate.rows, plate.row = held
         return moving, float(resting[0])
+
+
+def carried_by(store: Store) -> Array:
+    """Momentum and angular momentum about the origin (6,) of all plates with the water that moves along."""
+    return momenta(store.plates, store.plates.moved[:-1], store.plates.inertia[:-1])
 
 
 def _nodes(sections: SectionTable) -> tuple[Any, IntArray]:

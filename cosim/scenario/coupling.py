@@ -20,9 +20,10 @@ class Coupling(Section):
 
     #: time window (macro step) [s]; with steering the first one
     window: Annotated[Time, Limits("1 us", "10 s", "50 ms")] = 0.05
-    #: serial-explicit: the sheet under the last forces, then the rubble; parallel-explicit: both with the last data;
-    #: serial-implicit: windows are repeated until forces and motion agree
-    scheme: Scheme = "serial-explicit"
+    #: lockstep: both meet in every sub-step of the rubble, for closing cracks and dynamic propagation, where it is the
+    #: default; serial-explicit: the sheet under the last forces, then the rubble, the default else; parallel-explicit:
+    #: both with the last data; serial-implicit: windows are repeated until forces and motion agree
+    scheme: Scheme | None = None
     tolerance: float = Field(1e-3, gt=0, lt=1)  #: implicit: change of the forces, relative, that ends the iteration
     max_iterations: int = Field(30, ge=2, le=10_000)  #: implicit: of one window
     relaxation: float = Field(1.0, gt=0, le=1)  #: implicit: share of the change that is taken over before Aitken's own

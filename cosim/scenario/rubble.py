@@ -35,6 +35,11 @@ class Rubble(Section):
     filling_time: Annotated[Time, Limits("1 us", "1e6 s", "5 s")] = 5.0
     #: pressure at which a contact of a block crushes; default compressive_strength
     contact_strength: Annotated[Stress, Limits("100 Pa", "10 GPa", "2.5 MPa")] = None
+    breaks_again: bool = True  #: pieces part where bending passes the strength of the ice
+    #: bending stress at which a piece parts in two; default ice.flexural_strength, else ice.tensile_strength
+    flexural_strength: Annotated[Stress, Limits("1 kPa", "100 MPa", "500 kPa")] = None
+    #: over which the loads that bend a piece are averaged; default 0.5 (h / g)^0.5
+    breaking_time: Annotated[Time, Limits("1 us", "100 s", "0.2 s")] = None
     #: ice that has settled in front of the structure before the run [m^3]
     initial_volume: Annotated[VolumeOrZero, Limits("0 m^3", "1e9 m^3", "200 m^3")] = 0.0
     threads: Annotated[int, Field(ge=1, le=1024)] = 1  #: over the sections; changes no bit of the result

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from coupling.interface.exchange import ForcePairs, Restore, SheetForces
-from coupling.interface.sheet import Fragment, SheetEdge
+from coupling.interface.sheet import Event, Fragment, SheetEdge
 from coupling.interface.units import Array, IntArray
 
 
@@ -73,8 +73,8 @@ class HandOver:
 class RubbleParticipant(Protocol):
     """Broken ice. `coupling.rubble_port.RubblePort` is the one of this project, `NoRubble` the one that takes it away.
 
-    Per window first `add` for each fragment of it, then `set_sheet`, then `advance` (in lockstep `begin`, `meet`, `end`); then everything else speaks
-    of the window that has just ended. Blocks move from the state that their ice had at the start of the window.
+    Per window first `add` for each fragment of it, then `set_sheet`, then `advance` (in lockstep `begin`, `meet` for
+    every sub-step, `end`); then everything else speaks of the window that has just ended. Blocks move from the state that their ice had at the start of the window.
     """
 
     @property
@@ -128,7 +128,7 @@ class RubbleParticipant(Protocol):
         ...
 
     def meet(self, nodes: Array) -> Array:
-        """One sub-step of it: ``nodes`` (m, 11) of the edges as `SheetParticipant.nodes` has them; forces (m, 3) [N]."""
+        """One sub-step: ``nodes`` (m, 11) of the edges as `SheetParticipant.nodes` has them; forces on them (m, 3)."""
         ...
 
     def end(self) -> None:
@@ -141,6 +141,10 @@ class RubbleParticipant(Protocol):
 
     def forces_on_sheet(self) -> SheetForces:
         """Mean forces of the blocks on the sheet over the last window; new arrays in every window."""
+        ...
+
+    def events(self, t_ns: int, load: Array) -> list[Event]:
+        """Plates that have broken again by the end ``t_ns`` of the window, under the load (3,) of all phases [N]."""
         ...
 
     def load(self) -> Array:

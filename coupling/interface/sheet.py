@@ -18,7 +18,8 @@ class Event:
 
     ``kind`` is one of ``cell_failure`` (a first failure after a quiet window), ``split`` (the sheet falls into two
     parts that both stay in the lattice), ``circumferential`` (a piece in front of the structure
-    breaks off), ``hand_over`` (a fragment has become blocks), ``crack``
+    breaks off), ``hand_over`` (a fragment has become rubble), ``breaks_again`` (a plate of the rubble has parted in two),
+    ``crack``
     (a crack has passed the middle of the ice: from there on it is a hinge), ``hinge`` (cracks so deep surround a piece
     that still is held by what presses it), ``out_of_water`` (for the first time the sheet is lifted
     by more than its draft, where its linear foundation ends).
@@ -115,8 +116,8 @@ class SheetReport:
     hinged: Array | None = None  #: (3,) part of the load that hinged pieces give; None: there are none [N]
 
 
-#: The rubble in lockstep: takes the fragments that have left since the window began, if it has not got them yet, moves on
-#: by one sub-step, and gives the forces in it.
+#: The rubble in lockstep: takes the fragments that have left since the window began, if it has not got them yet, moves
+#: on by one sub-step, and gives the forces in it.
 Answer = Callable[[list[Fragment]], SheetForces]
 
 
@@ -164,8 +165,11 @@ class SheetParticipant(Protocol):
         ...
 
     def nodes(self, nodes: IntArray) -> Array:
-        """Nodes at a meeting in lockstep (m, 11): place x, z [m]; velocity; what the lattice will add to it by the next
-        meeting [m/s]; inverse mass [1/kg]; the last three in x, y, z."""
+        """Nodes at a meeting in lockstep (m, 11).
+
+        Place x, z [m]; velocity; what the lattice will add to it by the next meeting [m/s]; inverse mass [1/kg]; the
+        last three in x, y, z.
+        """
         ...
 
     def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from coupling.interface import Array, BlockTable, ForcePairs, Fragment, HandOver, Restore, SheetEdge, SheetForces
+from coupling.interface import Array, BlockTable, Event, ForcePairs, Fragment, HandOver, Restore, SheetEdge, SheetForces
 
 
 class NoRubble:
@@ -47,6 +47,10 @@ class NoRubble:
     def forces_on_sheet(self) -> SheetForces:
         """None."""
         return SheetForces.none()
+
+    def events(self, t_ns: int, load: Array) -> list[Event]:  # noqa: ARG002  as every rubble
+        """Nothing breaks."""
+        return []
 
     def load(self) -> Array:
         """No force."""

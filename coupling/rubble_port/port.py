@@ -12,6 +12,7 @@ from coupling.interface import (
     NS,
     Array,
     BlockTable,
+    Event,
     ForcePairs,
     Fragment,
     HandOver,
@@ -25,6 +26,7 @@ from coupling.interface import (
 )
 from coupling.rubble_port.hand_over import Arrivals
 from rubble import snapshot
+from rubble.breaking import Break
 from rubble.cut import Bearing, Cut, faceted
 from rubble.domain import Domain
 from rubble.energy import energy_terms
@@ -181,6 +183,10 @@ class RubblePort:
         sliding, _ = columns.pop("sliding"), columns.pop("spin")
         return BlockTable(phase=np.where(sliding, Phase.SLIDING, Phase.ROTATING).astype(np.int64), **columns)
 
+    def events(self, t_ns: int, load: Array) -> list[Event]:
+        """Plates that have broken again in the last window."""
+        return [_told(t_ns, load, b) for b in self.layer.breaks]
+
     def load(self) -> Array:
         """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
         parts = {Phase.ROTATING: self.layer.load_of(sliding=False), Phase.SLIDING: self.layer.load_of(sliding=True)}
@@ -214,6 +220,14 @@ class RubblePort:
         """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
         lost = {"cleared": self.layer.gone.momentum, "crushed": self.layer.crushed.momentum}
         return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
+
+
+def _told(t_ns: int, load: Array, b: Break) -> Event:
+    x, y, z = b.position.tolist()
+    longer, area = max(b.lengths), sum(b.areas)
+    text = f"piece of {area:.0f} m2 breaks again into {b.areas[0]:.0f} and {b.areas[1]:.0f} m2"
+    fx, fy, fz = load.tolist()
+    return Event(t_ns, "breaks_again", (fx, fy, fz), 0, (x, y, z), text, longer, area, "flexural-strength")
 
 
 def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:

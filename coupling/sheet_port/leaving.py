@@ -32,7 +32,7 @@ class Leaving:
         return [piece for piece, _ in self.pieces]
 
     def late(self, end: float) -> list[Fragment]:
-        """Pieces that the rubble does not have yet; in lockstep where their velocity has brought them by ``end`` [s]."""
+        """Pieces that the rubble does not have yet; in lockstep where their velocity brings them by ``end`` [s]."""
         if self._given is None:
             return [piece for piece, _ in self.pieces]
         left = zip(self.pieces[self._given :], self._times[self._given :], strict=True)

@@ -125,7 +125,9 @@ class SheetPort:
             "staggering": r.applied.get(RUBBLE, (0.0, 0.0)),
         }
         others = {name: pair for name, pair in r.applied.items() if name != RUBBLE}
-        return SheetReport(load, self._leaving.late(self.motion.t), events, budget, others, contact, _hinged(contact, hinges))
+        return SheetReport(
+            load, self._leaving.late(self.motion.t), events, budget, others, contact, _hinged(contact, hinges)
+        )
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""

@@ -98,7 +98,9 @@ class ExplicitEngine(Engine):
     def set_window(self, window: float) -> None:
         """Cuts windows of this length [s] from the next `start` on."""
         self.window = window
-        self.sub_steps = self.parts * math.ceil(window / self.parts / (self._longest or SHARE_OF_CRITICAL * self.critical))
+        self.sub_steps = self.parts * math.ceil(
+            window / self.parts / (self._longest or SHARE_OF_CRITICAL * self.critical)
+        )
         self.allocate(window / self.sub_steps)
 
     def watch(self, judge: Judge) -> None:

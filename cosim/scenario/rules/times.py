@@ -13,6 +13,22 @@ Faults = Iterator[PydanticCustomError]
 MOST_WINDOWS = 10_000_000  #: of a run
 
 
+def marches(m: Any) -> bool:
+    """Whether the sheet is on the explicit engine."""
+    f = m.fracture
+    return bool(f.cracks == "closing" or f.propagation == "dynamic")
+
+
+def lockstep_marches(m: Any) -> Faults:
+    """Steps of the implicit engine are as long as windows."""
+    if m.coupling.scheme == "lockstep" and not marches(m):
+        yield fault(
+            "coupling.scheme",
+            'lockstep needs fracture.cracks = "closing" or fracture.propagation = "dynamic"; remove the key, or name '
+            "another scheme",
+        )
+
+
 def bounds_enclose_the_window(m: Any) -> Faults:
     """With steering."""
     c = m.coupling
@@ -66,4 +82,10 @@ def nearest_multiples(value: float, step: float) -> list[float]:
     return [k * n_step / 1e9 for k in (below, below + 1) if k > 0]
 
 
-RULES = (bounds_enclose_the_window, times_are_whole_multiples, duration_is_whole, frames_are_whole)
+RULES = (
+    lockstep_marches,
+    bounds_enclose_the_window,
+    times_are_whole_multiples,
+    duration_is_whole,
+    frames_are_whole,
+)

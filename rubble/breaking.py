@@ -1,0 +1,126 @@
+"""Plates break again: who is long enough, how its load is followed, and its two parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rubble.arrays import Array
+from rubble.bending import CELLS, Ice, Loaded, judge
+from rubble.geometry import area_moments, clip
+from rubble.physics import RubblePhysics
+from rubble.piece import Piece, Plate, Start, prism_at
+from rubble.prism import Prism
+from rubble.store import Store
+
+SHORTEST = 2.0  #: length of a plate, in thicknesses, that can break into parts of one thickness each
+LEAST = 1e-3  #: area of a part of a piece, in thicknesses squared, below which it goes to the other part
+
+
+@dataclass(frozen=True)
+class Break:
+    """A plate that has broken."""
+
+    position: Array  #: (3,) of the cut [m]
+    lengths: tuple[float, float]  #: of the parts across the cut [m]
+    areas: tuple[float, float]  #: of the parts, seen from above on the plate [m2]
+    stress: float  #: over the flexural strength
+
+
+class Breaking:
+    """Follows what bends plates from window to window, and says which break."""
+
+    def __init__(self, physics: RubblePhysics) -> None:
+        p = self.physics = physics
+        self.ice = Ice(p.rho_i, p.thickness, p.flexural_strength, p.g, p.rho_w * p.g)
+        self._known: dict[int, tuple[float, Array]] = {}  #: time and impulses, by the number of the plate
+
+    def begin(self, store: Store) -> Loaded:
+        """Plates that may break, with what has been summed of their loads."""
+        spans = [(i, p, span_of(p)) for i, p in enumerate(store.list)] if np.isfinite(self.ice.strength) else []
+        found = [(i, p, s) for i, p, s in spans if np.diff(s).max() >= SHORTEST * self.ice.thickness]
+        row = np.full(len(store.list) + 1, -1, np.int64)
+        row[[i for i, _, _ in found]] = np.arange(len(found))
+        none = 0.0, np.zeros((2, CELLS + 1, 3))
+        loads = [self._known.get(p.id, none)[1] for _, p, _ in found]
+        return Loaded(
+            row,
+            np.array([s for _, _, s in found]).reshape(-1, 2, 2),
+            np.array(loads).reshape(-1, 2, CELLS + 1, 3),
+        )
+
+    def end(self, store: Store, loaded: Loaded, window: float) -> list[tuple[Plate, Array]]:
+        """Plates that break at the end of a window, with stress, axis and place as `bending.judge` gives them."""
+        known, self._known = self._known, {}
+        found = []
+        for i in np.flatnonzero(loaded.row[:-1] >= 0).tolist():
+            plate, row = store.list[i], int(loaded.row[i])
+            time = known[plate.id][0] + window if plate.id in known else window
+            if time < self.physics.breaking_time * (1.0 - 1e-9):
+                self._known[plate.id] = time, loaded.impulse[row]
+                continue
+            worst = judge(i, row, store.plates, store.tables.pieces, loaded, time, self.ice)
+            if worst[0] >= 1.0:
+                found.append((plate, worst))
+        return found
+
+
+def span_of(plate: Plate) -> Array:
+    """From where to where a plate reaches along its x and y axes (2, 2) [m]."""
+    x = np.concatenate([p.prism.polygon[:, 0] + p.centre[0] for p in plate.pieces])
+    y = [(p.centre[1] - 0.5 * p.prism.width, p.centre[1] + 0.5 * p.prism.width) for p in plate.pieces]
+    return np.array([(x.min(), x.max()), (np.min(y), np.max(y))])
+
+
+def parts_of(plate: Plate, axis: int, place: float, physics: RubblePhysics) -> list[list[tuple[Prism, Array]]]:
+    """Prisms with their places of the two parts of a plate that is cut across an axis at ``place`` [m]."""
+    parts: list[list[tuple[Prism, Array]]] = [[], []]
+    for piece in plate.pieces:
+        for side, cut in enumerate(_cut_x(piece, place) if axis == 0 else _cut_y(piece, place)):
+            outline, y, width = cut
+            if len(outline) >= 3 and width > 0.0 and area_moments(outline).area >= LEAST * physics.thickness**2:
+                parts[side].append(prism_at(outline, y, width, physics.rho_i))
+    return parts
+
+
+def _cut_x(piece: Piece, place: float) -> list[tuple[Array, float, float]]:
+    outline, y, w = piece.prism.polygon + piece.centre[::2], float(piece.centre[1]), piece.prism.width
+    return [(clip(outline, 1.0, 0.0, place), y, w), (clip(outline, -1.0, 0.0, -place), y, w)]
+
+
+def _cut_y(piece: Piece, place: float) -> list[tuple[Array, float, float]]:
+    outline, y, w = piece.prism.polygon + piece.centre[::2], float(piece.centre[1]), piece.prism.width
+    low, high = y - 0.5 * w, y + 0.5 * w
+    at = min(max(place, low), high)
+    return [(outline, 0.5 * (low + at), at - low), (outline, 0.5 * (at + high), high - at)]
+
+
+def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] | None:
+    """The two plates that take the place of one, and what is told of it; None if it cannot be cut there.
+
+    ``worst`` as `bending.judge` gives it. Each part moves on as the part of a rigid body that it is.
+    """
+    stress, axis, place = float(worst[0]), int(worst[1]), float(worst[2])
+    prisms = [p for p in parts_of(plate, axis, place, store.physics) if p]
+    if len(prisms) < 2:
+        return None
+    at, cut = plate.position.copy(), plate.position + plate.rotation[:, axis] * place
+    store.take(plate)
+    start = Start(at, plate.rows.quaternion[plate.row].copy(), plate.velocity.copy(), plate.omega.copy())
+    new = []
+    for own in prisms:
+        centre = store.make(plate.fragment, own, start, plate.flooded).position
+        moved = replace(start, velocity=start.velocity + np.cross(start.omega, centre - at))
+        new.append(store.make(plate.fragment, own, moved, plate.flooded))
+        new[-1].aligned, new[-1].sliding = plate.aligned, plate.sliding
+    store.add(*new)
+    lengths = [float(np.diff(span_of(p)[axis])[0]) for p in new]
+    areas = [plan_area(own, store.physics.thickness) for own in prisms]
+    return new, Break(cut, (lengths[0], lengths[1]), (areas[0], areas[1]), stress)
+
+
+def plan_area(prisms: Sequence[tuple[Prism, Array]], thickness: float) -> float:
+    """Of prisms, seen along the normal of their plate [m2]."""
+    return sum(p.area * p.width for p, _ in prisms) / thickness
