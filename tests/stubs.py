@@ -90,6 +90,9 @@ class MassBehindSpring:
     def forces_on_sheet(self):
         return SheetForces(np.array([0]), np.array([[self._force, 0.0, 0.0]]))
 
+    def events(self, t_ns, load):
+        return []
+
     def load(self):
         return np.zeros((3, 3))
 

@@ -79,6 +79,9 @@ class StubRubble:
     def forces_on_sheet(self):
         return SheetForces(np.array([0]), np.array([[self.force, 0.0, 0.0]]))
 
+    def events(self, t_ns, load):
+        return []
+
     def load(self):
         return np.zeros((3, 3))
 
