@@ -38,12 +38,6 @@ WAY = record(
     *("ta_x", "ta_y", "ta_z", "tb_x", "tb_y", "tb_z", "mass", "impulse", "target"),
 )
 
-#: Pieces of ice that two planes do not both see may be found deep in each other when one of them comes into a plane.
-#: They have met in between. To push them apart would lift ice by as much as they overlap; they may stay as deep as they
-#: have met and get no deeper. Where ice crushes, the overlap is crushed ice and nothing pushes it out either. What is
-#: left of such an overlap goes in this time [s]
-GIVES_WAY = 20.0
-
 
 class Rows(NamedTuple):
     """One row per point of contact; room for more than there are."""
@@ -203,7 +197,12 @@ def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
 
 @compiled(nogil=True)
 def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surface, dt: float) -> None:
-    """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step."""
+    """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step.
+
+    Pieces of ice that two planes do not both see may be found deep in each other when one of them comes into a plane.
+    They have met in between. To push them apart would lift ice by as much as they overlap; they may stay as deep as
+    they have met and get no deeper. Where ice crushes, the overlap is crushed ice and nothing pushes it out either.
+    """
     motion, nodes, moves = plates.motion, edges.nodes, edges.motion
     for c in range(count):
         point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
@@ -217,5 +216,5 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
         point.mu = mu
         n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
         over = max(point.depth - surface.slop, 0.0)
-        point.met = over if point.crushes else min(point.met, over) * (1.0 - dt / GIVES_WAY)
+        point.met = over if point.crushes else min(point.met, over)
         point.shift_speed = surface.bias * (over - point.met) / dt

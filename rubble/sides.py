@@ -72,7 +72,7 @@ def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, bef
         point.slot_a, point.slot_b, point.feature = a, b, SIDE
         point.x, point.y, point.z = 0.5 * (x + u), 0.5 * (y + v), 0.5 * (z + w)
         point.depth, point.most = depth, scene.strength * sides.area[k]
-        _directions(rows, c, n)
+        directions(rows, c, n)
         set_arms(rows, c, plates, scene.edges)
         while last < before and _earlier(old.point[last], a, b):
             last += 1
@@ -93,7 +93,7 @@ def _earlier(p: Record, a: int, b: int) -> bool:
 
 
 @compiled(nogil=True)
-def _directions(rows: Rows, c: int, n: Array) -> None:
+def directions(rows: Rows, c: int, n: Array) -> None:
     """n, and two directions across it: the first lies flat where n leads out of the plane, else in the plane."""
     tx, ty, tz = (n[1], -n[0], 0.0) if abs(n[1]) > 0.5 else (-n[2], 0.0, n[0])
     length = np.sqrt(tx * tx + ty * ty + tz * tz)
@@ -104,7 +104,7 @@ def _directions(rows: Rows, c: int, n: Array) -> None:
 
 
 @compiled(nogil=True)
-def _outline(scene: Scene, s: int) -> Array:
+def outline_of(scene: Scene, s: int) -> Array:
     """Corners of a slice in the plane (m, 2) [m]."""
     r, b, p = scene.plates.rotation[scene.slices.plate[s]], scene.slices.anchor[s], scene.plates.position
     h, k = max(np.hypot(r[0, 0], r[2, 0]), 1e-12), scene.slices.plate[s]
@@ -144,7 +144,7 @@ def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, s
     ``order`` lists the slices section by section, ascending, from ``first[i]`` to ``first[i + 1]`` for section i.
     """
     slices, near, found = scene.slices, NEAR * scene.pitch, 0
-    outlines = [_outline(scene, s) for s in range(slices.piece.shape[0])]
+    outlines = [outline_of(scene, s) for s in range(slices.piece.shape[0])]
     for a in range(slices.piece.shape[0]):
         i = slices.section[a] + 1
         if i + 1 >= first.shape[0] or scene.sections.y[i] - scene.sections.y[i - 1] > 1.5 * scene.pitch:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rubble.arrays import Array, IntArray, Records
+from rubble.banks import Banks, bank_rows
 from rubble.bending import Loaded, sum_bending
 from rubble.books import book_contacts, book_step, kick, outside, sum_contacts
 from rubble.compiled import compiled
@@ -31,6 +32,7 @@ class Window(NamedTuple):
     hulls: Hulls
     thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
     sides: Sides
+    banks: Banks
     joints: Joints
     loaded: Loaded
     planar: bool  #: plates keep their y, and do not roll or yaw
@@ -66,6 +68,8 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         if found < 0:
             return int(found)
         contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0])
+        if contacts >= 0:
+            contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0])
         found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
         if found < 0:
             return NO_ROOM

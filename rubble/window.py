@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rubble.arrays import Array, IntArray
+from rubble.banks import Banks, bank_room, find_banks
 from rubble.books import BOOKS, SHIFT
 from rubble.breaking import Break, Breaking, part
 from rubble.friction import coefficient
@@ -50,7 +51,7 @@ class Runner:
         self.window = 0.0  #: length of the last one [s]
         self._rows: tuple[Rows, Rows] = room(4096), room(4096)
         self._counted = np.zeros(2, np.int64)
-        self._most_sides = 256
+        self._most_sides, self._most_banks = 256, 64
         self._pressure: dict[int, Array] = {}
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
@@ -87,6 +88,7 @@ class Runner:
             hulls=tables.hulls,
             thrust=tables.thrust,
             sides=no_sides() if self.planar else self._sides(scene, store),
+            banks=bank_room(0) if self.planar else self._banks(scene, store),
             joints=joints,
             loaded=self.breaking.begin(store),
             planar=self.planar,
@@ -165,6 +167,15 @@ class Runner:
             if found <= self._most_sides:
                 return Sides(sides.pair[:found], sides.normal[:found], sides.arm[:found], sides.area[:found])
             self._most_sides = 2 * found
+
+    def _banks(self, scene: Scene, store: Store) -> Banks:
+        """Slices that may meet a side of the sheet."""
+        while True:
+            banks = bank_room(self._most_banks)
+            found = find_banks(scene, store.tables.pieces, self.physics.thickness, banks)
+            if found <= self._most_banks:
+                return Banks(**{name: column[:found] for name, column in banks._asdict().items()})
+            self._most_banks = 2 * found
 
     def _surface(self) -> Surface:
         p = self.physics
