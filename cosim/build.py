@@ -192,7 +192,7 @@ def flexural_strength(scenario: Scenario) -> float:
 
 
 def breaking_time(scenario: Scenario) -> float:
-    """Over which the loads that bend a piece are averaged [s]: half the time of gravity waves as long as it is thick."""
+    """Over which the loads that bend a piece are averaged [s]: half that of gravity over its thickness."""
     given: float | None = scenario.rubble.breaking_time
     return 0.5 * math.sqrt(scenario.ice.thickness / scenario.water.gravity) if given is None else given
 

@@ -13,10 +13,11 @@ import numpy as np
 
 from rubble.arrays import Array, IntArray, Record
 from rubble.compiled import compiled
+from rubble.edges import locate
 from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
 from rubble.plates import times, turn_back
-from rubble.rows import CRUSHES, SHEET, Rows, locate, set_arms
+from rubble.rows import CRUSHES, SHEET, Rows, set_arms
 from rubble.sides import NEAR, directions, outline_of
 from rubble.slices import Pieces, end_along_y
 from rubble.slots import SHEET_SLOT

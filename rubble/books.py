@@ -18,8 +18,9 @@ import numpy as np
 
 from rubble.arrays import Array, Record, Records, record
 from rubble.compiled import compiled
+from rubble.edges import Edges, sheet_speed
 from rubble.plates import Plates
-from rubble.rows import ICE, JOINT, SHEET, STRUCTURE, Edges, Rows, sheet_speed, speed
+from rubble.rows import ICE, JOINT, SHEET, STRUCTURE, Rows, speed
 from rubble.water import Hulls
 
 #: since the start [J]: put in by stepping, by correction, by thrust; done by plates on the sheet; lost to drag; work of

@@ -11,9 +11,10 @@ from rubble.arbiters import LIST
 from rubble.arrays import Array, IntArray, Record, Records
 from rubble.compiled import compiled
 from rubble.cut import nearest
+from rubble.edges import Edges, deeper_on_sheet
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
-from rubble.rows import CRUSHES, ICE, SHEET, STRUCTURE, Edges, Rows, locate, set_arms, set_way
+from rubble.rows import CRUSHES, ICE, SHEET, STRUCTURE, Rows, set_arms, set_way
 from rubble.slices import Pieces, Slices
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
@@ -137,7 +138,7 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
         depth += deeper
     elif a == SHEET_SLOT:
         point.kind, point.edge = SHEET, section
-        depth += _on_sheet(scene.edges, section, point, nx, nz)
+        depth += deeper_on_sheet(scene.edges, section, point, nx, nz)
     else:
         point.a = scene.slices.plate[a]
         n_y = _lean(scene, a, b, nx, nz)
@@ -188,17 +189,6 @@ def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple
         x = np.copysign(least, x)
     point.y = y
     return nx * (face.constant + face.radial * y / x), shift * nx
-
-
-@compiled(nogil=True)
-def _on_sheet(edges: Edges, section: int, point: Record, nx: float, nz: float) -> float:
-    """By how much a contact with the sheet is deeper than with its outline: nodes have moved since that was made."""
-    nodes, first = edges.nodes, edges.offset[section]
-    locate(point, nodes, first, edges.offset[section + 1])
-    foremost, f, r, w = nodes[first], nodes[point.front], nodes[point.rear], point.weight
-    x = w * (f.x - f.outline_x) + (1.0 - w) * (r.x - r.outline_x) - foremost.x
-    z = w * (f.z - f.outline_z) + (1.0 - w) * (r.z - r.outline_z) - foremost.z
-    return float(x * nx + z * nz)
 
 
 @compiled(nogil=True)

@@ -7,15 +7,11 @@ with mass and momentum.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from math import floor, isfinite
-from types import SimpleNamespace
-from typing import Any
+from collections.abc import Sequence
+from math import isfinite
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rubble import table
 from rubble.arrays import Array, rows
 from rubble.breaking import Break
 from rubble.cut import Solids, open_water
@@ -26,6 +22,7 @@ from rubble.lost import Lost
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate, Slab, Start, one_piece
 from rubble.prism import Prism
+from rubble.readings import Readings
 from rubble.section import Section
 from rubble.sections import SectionTable
 from rubble.sheet import MEETS, SheetBody, SheetMotion
@@ -33,7 +30,7 @@ from rubble.store import Store
 from rubble.window import Runner
 
 
-class RubbleLayer:
+class RubbleLayer(Readings):
     """Plates in sections ``pitch`` apart; ``solids(y)`` gives the structure in the plane y."""
 
     def __init__(
@@ -80,10 +77,6 @@ class RubbleLayer:
     def centre(self, key: int) -> float:
         """Y of a section's plane [m]."""
         return self.origin + key * self.pitch
-
-    def key_at(self, y: float) -> int:
-        """Number of the section that holds y."""
-        return floor((y - self.origin) / self.pitch + 0.5)
 
     def trim(self, polygon: Array, section: int) -> Array:
         """What is left of an outline (k, 2) outside the structure in a section, convex; (0, 2) if nothing is."""
@@ -148,11 +141,6 @@ class RubbleLayer:
             if plate.id == number:
                 return plate
         raise KeyError(number)
-
-    @property
-    def blocks(self) -> list[Plate]:
-        """All plates in the order of their numbers."""
-        return self.store.list
 
     def set_sheet(self, section: int, motion: SheetMotion) -> None:
         """Where the sheet is in a section at the start of a window, and how it moves."""
@@ -229,56 +217,3 @@ class RubbleLayer:
             self.cleared.append(plate.id)
             self.gone.take(plate.mass, plate.momentum, self.runner.energy_of(plate))
         self.store.take(*out)
-
-    def columns(self) -> dict[str, NDArray[Any]]:
-        """All plates as arrays by name, in the order of their numbers; see `table.columns`."""
-        return table.columns(self.store, self.key_at, self.runner.window)
-
-    def table(self) -> SimpleNamespace:
-        """The same with dots."""
-        return SimpleNamespace(**self.columns())
-
-    @property
-    def load_on_structure(self) -> Array:
-        """Mean force of each plate on the structure over the last window (n, 3), in the order of the table [N]."""
-        return table.loads(self.store, self.runner.window)
-
-    def load_of(self, *, sliding: bool) -> Array:
-        """Sum of the mean forces of the plates that slide, or of those that rotate (3,) [N]."""
-        phase = np.array([p.sliding for p in self.blocks], np.bool_) == sliding
-        return np.asarray(self.load_on_structure[phase].sum(axis=0))
-
-    def contact_centres(self) -> Array:
-        """Where each plate presses on the structure: mean x, y and z (n, 3) of its contacts, weighted with impulse.
-
-        Over the last window, in the order of the table; nan without contact [m].
-        """
-        return table.contact_centres(self.store)
-
-    def sheet_forces(self, section: int) -> Array:
-        """Mean force of the rubble on the sheet's nodes in a section over the last window (m, 3) [N]."""
-        found = self.sections.get(section)
-        if found is None or found.sheet is None:
-            return np.zeros((0, 3))
-        window = self.runner.window
-        return found.sheet.impulse / window if window else np.zeros_like(found.sheet.impulse)
-
-    @property
-    def power_on_sheet(self) -> float:
-        """Mean power of the plates' forces on the moving edges of the sheet over the last window [W]."""
-        return self.runner.power_on_sheet
-
-    @property
-    def budget(self) -> Mapping[str, Array]:
-        """What carries the plates, mean forces (x, z) over the last window [N]; see `window.Runner.budget`."""
-        return self.runner.budget
-
-    @property
-    def mass(self) -> float:
-        """True mass of all plates that are followed [kg]."""
-        return float(self.store.tables.mass.sum())
-
-    @property
-    def momentum(self) -> Array:
-        """True mass times velocity of all plates (3,) [N s]."""
-        return sum((p.momentum for p in self.blocks), np.zeros(3))

@@ -16,8 +16,9 @@ import numpy as np
 
 from rubble.arrays import Record
 from rubble.compiled import compiled
+from rubble.edges import Edges, push_edge, push_sheet, sheet_speed
 from rubble.plates import Plates
-from rubble.rows import Edges, Rows, push_edge, push_sheet, sheet_speed, speed
+from rubble.rows import Rows, speed
 
 
 @compiled(nogil=True)

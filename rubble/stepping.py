@@ -11,10 +11,11 @@ from rubble.banks import Banks, bank_rows
 from rubble.bending import Loaded, sum_bending
 from rubble.books import book_contacts, book_step, kick, outside, sum_contacts
 from rubble.compiled import compiled
+from rubble.edges import Edges, push_edge
 from rubble.gather import Scene, find_pairs, gather
 from rubble.joints import Joints, joint_rows
 from rubble.plates import Plates, move_all
-from rubble.rows import Edges, Rows, Surface, push_edge, set_laws
+from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
 from rubble.solver import solve
 from rubble.water import Hulls, Water, fill_tops, plate_forces

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from rubble.arrays import Array, IntArray
 from rubble.banks import Banks, bank_room, find_banks
 from rubble.books import BOOKS, SHIFT
 from rubble.breaking import Break, Breaking, part
+from rubble.edges import Edges
 from rubble.friction import coefficient
 from rubble.gather import Scene
 from rubble.joints import Joints
@@ -17,9 +18,9 @@ from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
 from rubble.plates import kinetic, momenta
-from rubble.rows import Edges, Rows, Surface, room, still_edges
+from rubble.rows import Rows, Surface, grown, room
 from rubble.sections import SectionTable
-from rubble.sheet import NODE
+from rubble.shore import Yields, edges_of, keep
 from rubble.sides import Sides, find_sides, no_sides, side_room
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
@@ -44,7 +45,7 @@ class Runner:
     def __init__(self, physics: RubblePhysics) -> None:
         self.physics, self.water = physics, water_of(physics)
         #: how edges yield, by the number of their section; None: sheet and rubble go in lockstep
-        self.yields: tuple[dict[int, int], Array] | None = {}, np.zeros((2, 0, 0))
+        self.yields: Yields | None = ({}, np.zeros((2, 0, 0)))
         self.books, self.water_impulse = np.zeros(1, BOOKS), np.zeros(1, WATER_IMPULSE)
         self.momenta = np.zeros((3, 6))  #: that plates received since the start, see `books`
         self.planar = False  #: plates move in their x-z plane only, while initial rubble settles
@@ -79,7 +80,7 @@ class Runner:
         tables, plates = store.tables, store.plates
         tables.sums[:] = 0.0
         self.water_impulse[:] = 0
-        self.edges = self._edges(sections)
+        self.edges = edges_of(sections, self.yields)
         scene = self._scene(store, sections, self.edges)
         window = Window(
             iterations=int(self.physics.iterations),
@@ -114,7 +115,7 @@ class Runner:
         """The window ends."""
         run = self._run
         sections.make_room()
-        _keep(sections, self.edges)
+        keep(sections, self.edges)
         self._pressure = {p.id: run.sums.pressure[i] for i, p in enumerate(store.list)}
         self.power_on_sheet = (float(self.books["on_sheet"][0]) - run.on_sheet) / self.window
         self._balance(store, run.momentum)
@@ -182,21 +183,6 @@ class Runner:
         bias = 1.0 - BIAS**p.substep
         return Surface(coefficient(p.mu_ice_ice), coefficient(p.mu_structure), p.restitution, bias, p.slop)
 
-    def _edges(self, sections: SectionTable) -> Edges:
-        """The sheet in all sections as a window finds it."""
-        nodes, offset = _nodes(sections)
-        if self.yields is None:
-            edges = still_edges(nodes, offset, yielding=False)
-        else:
-            (known, yields), edges = self.yields, still_edges(nodes, offset, yielding=True)
-            at = np.array([known.get(k, -1) for k in sections.by_key], np.int64)
-            on = np.flatnonzero(at >= 0)
-            edges.yields[:, on[:, None], on[None, :]] = yields[:, at[on][:, None], at[on][None, :]]
-        for e, section in enumerate(sections.by_key.values()):
-            if section.sheet is not None:
-                edges.carried[e], edges.body[e] = section.sheet.applied, section.sheet.address
-        return edges
-
     def _known_pressure(self, store: Store) -> Array:
         unknown = np.full(6, np.nan)
         return np.array([self._pressure.get(p.id, unknown) for p in store.list]).reshape(-1, 6)
@@ -212,7 +198,7 @@ class Runner:
     def _make_room(self) -> None:
         if 2 * int(self._counted[0]) > len(self._rows[0].point):
             larger = 4 * len(self._rows[0].point)
-            self._rows = _grown(self._rows[0], larger), _grown(self._rows[1], larger)
+            self._rows = grown(self._rows[0], larger), grown(self._rows[1], larger)
 
     def _balance(self, store: Store, before: Array) -> None:
         """Mean forces x and z that carry the plates; ``before``: momentum with added mass at the start."""
@@ -258,28 +244,6 @@ class Runner:
 def carried_by(store: Store) -> Array:
     """Momentum and angular momentum about the origin (6,) of all plates with the water that moves along."""
     return momenta(store.plates, store.plates.moved[:-1], store.plates.inertia[:-1])
-
-
-def _nodes(sections: SectionTable) -> tuple[Any, IntArray]:
-    own = [s.sheet.nodes if s.sheet is not None else np.zeros(0, NODE) for s in sections.by_key.values()]
-    nodes = np.concatenate([np.zeros(0, NODE), *own])
-    for axis in "xyz":
-        nodes[f"impulse_{axis}"] = 0.0
-    return nodes, np.cumsum([0, *map(len, own)], dtype=np.int64)
-
-
-def _keep(sections: SectionTable, edges: Edges) -> None:
-    """Nodes of the sheet as the window has left them."""
-    for e, section in enumerate(sections.by_key.values()):
-        if section.sheet is not None:
-            section.sheet.nodes = edges.nodes[edges.offset[e] : edges.offset[e + 1]].copy()
-
-
-def _grown(rows: Rows, count: int) -> Rows:
-    new = room(count)
-    for a, b in zip(rows, new, strict=True):
-        b[: len(a)] = a
-    return new
 
 
 WRONG = {-1: "too many pairs in contact at once", -2: "contact with an unknown body", -3: "too many contacts at once"}

@@ -77,7 +77,7 @@ print(energy_terms(layer)["stepping_loss"])
 
 
 def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it(tmp_path):
-    """`stepping.advance_substeps`, unchanged, calls `books.kick`: m (g dt)^2 / 2 per sub-step, then three times it."""
+    """`stepping.advance_substeps`, unchanged, calls `books.book_step`: m (g dt)^2 / 2 a sub-step, then three times it."""
     shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
     books = tmp_path / "rubble" / "books.py"
 
@@ -88,8 +88,8 @@ def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it
     gain = 10 * (9.81 * 0.005) ** 2 / 2 * 900.0
     assert stepping() == pytest.approx(-gain, rel=1e-9)
     text = books.read_text()
-    assert "+ fz * fz)" in text
-    books.write_text(text.replace("+ fz * fz)", "+ 3.0 * fz * fz)"))
+    assert "books.stepping += 0.5 * dt * total" in text
+    books.write_text(text.replace("books.stepping += 0.5 * dt * total", "books.stepping += 1.5 * dt * total"))
     assert stepping() == pytest.approx(-3.0 * gain, rel=1e-9)
 
 

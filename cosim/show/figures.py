@@ -28,7 +28,13 @@ ENERGY = {
     "sheet: damping, scheme": ("#9a9fa6", ("damping_loss", "scheme_loss")),
     "fracture, hand-over": (
         "#1d2733",
-        ("fracture_loss", "handover_elastic_loss", "handover_potential_loss", "handover_kinetic_loss"),
+        (
+            "fracture_loss",
+            "breaking_again_loss",
+            "handover_elastic_loss",
+            "handover_potential_loss",
+            "handover_kinetic_loss",
+        ),
     ),
     "stored in the sheet": ("#8d6cab", ("sheet_elastic", "sheet_foundation", "sheet_kinetic")),
     "stored in the rubble": ("#e6812b", ("rubble_potential", "rubble_kinetic")),

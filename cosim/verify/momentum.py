@@ -69,8 +69,8 @@ def collide(p: dict[str, Any], turned: float, offset: float) -> tuple[Array, Arr
         layer.advance(1)
     outline, t = layer.block(0).outline, layer.table()
     tip = outline[np.argmax(outline[:, 0])]
-    face = np.array([t.position[1, 0] - B[0] / 2, tip[1]])
-    return before, _motion(layer), np.array([tip, face]) - t.position[:, [0, 2]]
+    middle = np.array([0.5 * (tip[0] + t.position[1, 0] - B[0] / 2), tip[1]])  # of the overlap: both feel it there
+    return before, _motion(layer), middle - t.position[:, [0, 2]]
 
 
 def _motion(layer: RubbleLayer) -> Array:

@@ -74,7 +74,8 @@ class RubbleParticipant(Protocol):
     """Broken ice. `coupling.rubble_port.RubblePort` is the one of this project, `NoRubble` the one that takes it away.
 
     Per window first `add` for each fragment of it, then `set_sheet`, then `advance` (in lockstep `begin`, `meet` for
-    every sub-step, `end`); then everything else speaks of the window that has just ended. Blocks move from the state that their ice had at the start of the window.
+    every sub-step, `end`); then everything else speaks of the window that has just ended. Blocks move from the state
+    that their ice had at the start of the window.
     """
 
     @property

@@ -227,7 +227,17 @@ def _told(t_ns: int, load: Array, b: Break) -> Event:
     longer, area = max(b.lengths), sum(b.areas)
     text = f"piece of {area:.0f} m2 breaks again into {b.areas[0]:.0f} and {b.areas[1]:.0f} m2"
     fx, fy, fz = load.tolist()
-    return Event(t_ns, "breaks_again", (fx, fy, fz), 0, (x, y, z), text, longer, area, "flexural-strength")
+    return Event(
+        t_ns,
+        "breaks_again",
+        (fx, fy, fz),
+        cells=0,
+        position=(x, y, z),
+        text=text,
+        length=longer,
+        area=area,
+        cause="flexural-strength",
+    )
 
 
 def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:

@@ -162,7 +162,7 @@ def test_a_strength_is_asked_for_where_a_criterion_needs_it(tmp_path, criterion,
         ("fracture.criteria=[]", "at least one name in brackets"),
         ("fracture.criteria=['spalling']", "ice.spalling_strength: missing; the failure criterion spalling needs it"),
         ("sheet.stiffness=hrenikoff", "sheet.stiffness = 'hrenikoff': unknown name; did you mean hrennikoff?"),
-        ("coupling.scheme=countin", "known: serial-explicit, parallel-explicit, serial-implicit"),
+        ("coupling.scheme=countin", "known: lockstep, serial-explicit, parallel-explicit, serial-implicit"),
         ("contact.model=overlapping", "did you mean overlap?"),
     ],
 )

@@ -203,6 +203,7 @@ def test_every_rule_can_be_broken(tmp_path):
             "rubble.initial_volume='10 m^3'",
         ],
         "ice_can_slide": ["contact.friction=0.9"],
+        "lockstep_marches": ["coupling.scheme='lockstep'", "fracture.cracks='open'", "ice.tensile_strength='500 kPa'"],
         "bounds_enclose_the_window": ["coupling.longest_window='0.1 s'"],
         "times_are_whole_multiples": ["coupling.window='7 ms'"],
         "duration_is_whole": ["scenario.duration='10.01 s'"],

@@ -62,7 +62,7 @@ def fault(*overrides: str) -> str:
         ("coupling.relaxation=1.5", ["coupling.relaxation", "less than or equal to 1"]),
         ("coupling.unconverged=ignore", ["coupling.unconverged", "stop", "count"]),
         ("coupling.steering=wind", ["coupling.steering", "fixed", "power"]),
-        ("coupling.scheme=fancy", ["coupling.scheme", "fancy", "known: serial-explicit, parallel-explicit"]),
+        ("coupling.scheme=fancy", ["coupling.scheme", "fancy", "known: lockstep, serial-explicit, parallel-explicit"]),
         ("coupling.scheme=serial-implict", ["coupling.scheme", "did you mean serial-implicit?"]),
         ("contact.model=crush", ["contact.model", "crush", "did you mean crushing?"]),
         ("structure.neck_radius=16 m", ["structure.neck_radius", "15 m"]),

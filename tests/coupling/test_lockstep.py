@@ -63,5 +63,5 @@ def test_without_what_the_lattice_does_in_a_sub_step_the_sheet_creeps_into_the_p
 def test_a_lockstep_needs_the_explicit_engine():
     from cosim.scenario.errors import InputError
 
-    with pytest.raises(InputError, match="lockstep needs fracture.cracks"):
+    with pytest.raises(InputError, match=r"lockstep needs fracture\.cracks"):
         load_scenario("first_cone", ["coupling.scheme=lockstep"])

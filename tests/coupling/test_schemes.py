@@ -127,6 +127,9 @@ class Wall:
     def forces_on_sheet(self):
         return stubs.SheetForces(np.array([0]), np.array([[-self.pressed, 0.0, 0.0]]))
 
+    def events(self, t_ns, load):
+        return []
+
     def load(self):
         return np.zeros((3, 3))
 

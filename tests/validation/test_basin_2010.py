@@ -117,7 +117,7 @@ def test_every_value_of_the_campaign_has_its_source(case):
 
 
 def test_a_coarse_floe_breaks_and_its_balances_close():
-    result, seen = run("basin_2010_floe_34x68m", "sheet.nodes=[16,31]", "scenario.duration='30 s'")
+    result, seen = run("basin_2010_floe_34x68m", "sheet.nodes=[16,31]", "scenario.duration='33 s'")
     assert any(e.kind == "circumferential" for e in result.events)
     assert result.blocks > 0
     check_balances(result.ledger, seen, result.ledger["initial_mass"])
