@@ -8,7 +8,7 @@ import tomllib
 import pytest
 from jsonschema import Draft202012Validator
 
-from cosim.scenario.finding import find_scenarios
+from cosim.scenario.finding import find_scenarios, locate
 from cosim.scenario.judge import JUDGES, doubts_of
 from cosim.scenario.keys import keys_of
 from cosim.scenario.loading import load_scenario
@@ -37,6 +37,8 @@ def test_a_new_scenario_from_another_one(cosim, tmp_path, name):
     assert cosim("new", tmp_path / "mine", "--from", name)[0] == 0
     assert load_scenario(tmp_path / "mine").model == load_scenario(name).model
     assert "base" not in tomllib.loads((tmp_path / "mine/scenario.toml").read_text())
+    copied = (tmp_path / "mine/reference.toml").read_text()
+    assert copied == (locate(name).parent / "reference.toml").read_text()
 
 
 def test_new_keeps_what_is_there(cosim, tmp_path):
