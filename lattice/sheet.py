@@ -3,11 +3,14 @@
 A window of length dt is solved in one step. If a cell is overloaded at its end, the instant at which its utilisation
 reached 1 is located on the step's interpolation, the cell is removed and the same window is solved again, until no
 cell is overloaded (thesis 4.2.1; one cell at a time, so that the order of a cascade is that of the utilisation).
+A step whose contact finds no equilibrium, or whose energy does not balance, is solved in halves, down to `SHORTEST`.
 
 Quiet windows are read off a long step (`lattice.long_step`). The window of a failure is always solved on its own.
 """
 
 from __future__ import annotations
+
+from copy import copy
 
 import numpy as np
 
@@ -20,7 +23,9 @@ from lattice.implicit.step import Step
 from lattice.loads import Loads, keep, total
 from lattice.long_step import LongSteps
 from lattice.outcome import TURNED_TOO_FAR, Outcome
-from lattice.reaction import between, of_cubic, of_step
+from lattice.part_steps import BALANCED, NOTHING, SHORTEST, Parts
+from lattice.reaction import Reaction, between, of_cubic, of_step
+from lattice.state import StepError
 
 LOCATION = 1e-4  #: part of a window to which a failure is located: 2.5 us of 25 ms, far below what the step resolves
 TURNED = 0.1  #: rotation out of plane at which a hanging piece leaves: 1 - cos = 0.5 %, the lattice is linear [rad]
@@ -71,40 +76,60 @@ class Sheet(Floe):
     # ---- one window -------------------------------------------------------------------------------------------
 
     def _solve_window(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        out = Outcome()
+        out, parts = Outcome(), Parts(self.grid.nodes)
         if self._rotation().max() > TURNED:
             self._tear_off(t, contact, out, release)
             keep(loads, self.present)
+        done, share = 0.0, 1.0  # of the window; sums of powers of two are exact
+        while done < 1.0:
+            try:
+                step = self._settle(t + done * self.dt, share * self.dt, loads, contact, out, release)
+                reaction = self._accept(step, loads, contact)
+            except StepError as error:
+                share = _halved(share, self.dt, error)
+                continue
+            parts.add(share, step, contact.nodes, reaction)
+            done += share
+        out.contact_mean, out.contact_nodes = parts.contact(contact.nodes)
+        out.contact_end, out.reaction, out.parts = step.contact_end, parts.reaction(), self.parts
+        if out.failed:
+            self.ahead.interrupt()
+        return out
+
+    def _settle(self, t: float, dt: float, loads: Loads, contact: EdgeContact, out: Outcome, release: Release) -> Step:
+        """A step over ``dt`` at whose end no cell is overloaded: cells fail, worst first, until it is one."""
         while True:
-            step = self.engine.step(t, self.dt, self.state, *total(loads, self.grid.nodes), contact)
-            utilisation = self._utilisation(step.state)
-            worst = int(np.argmax(utilisation))
-            if utilisation[worst] < 1.0:
-                break
+            step = self.engine.step(t, dt, self.state, *total(loads, self.grid.nodes), contact)
+            self.utilisation = self._utilisation(step.state)
+            worst = int(np.argmax(self.utilisation))
+            if self.utilisation[worst] < 1.0:
+                return step
             if out.failure is None:
                 out.failure = self._locate(t, step, contact)
             causes = self.judge.causes(step.state.u, step.state.q, self.standing, np.array([worst]))
             self.fail([worst], causes, self.state, out)
             self._release_loose(out, release)
             keep(loads, self.present)
-        self._accept(step, loads, contact, out)
-        self.utilisation = utilisation
-        if out.failed:
-            self.ahead.interrupt()
-        return out
 
-    def _accept(self, step: Step, loads: Loads, contact: EdgeContact, out: Outcome) -> None:
-        """Takes the end of a step as the new state, with its energy and what has carried the sheet."""
-        live, present = self.live_cells, self.present
-        self.energy.book_step(step, loads, contact.nodes, live, present)
+    def _accept(self, step: Step, loads: Loads, contact: EdgeContact) -> Reaction:
+        """Takes the end of a step as the new state, with its energy; what has carried the sheet.
+
+        StepError, and nothing is taken, if its energy does not balance.
+        """
+        live, present, dt, books = self.live_cells, self.present, step.dt, copy(self.energy)
+        books.measure(self.state, live, present)
+        before, stored = books.residual, books.stored
+        books.book_step(step, loads, contact.nodes, live, present)
+        error, scale = abs(books.residual - before), max(abs(books.contact), abs(books.received), books.stored, stored)
+        if not error <= BALANCED * (scale + NOTHING * self.ice.E * self.ice.h**3):
+            raise StepError(f"the energy of a step of the sheet is off by {error:.3g} J of {scale:.3g} J")
+        self.energy = books
         applied = self.support.applied(loads)
         a, b, mean = self.state, step.state, of_step(step)
         at_once = applied.held + self.energy.on_held(contact.nodes, step.contact_mean)
-        held = self.support.force(mean, a, b, self.dt, live) - at_once
-        out.reaction = between(self.support, a, b, self.dt, mean, held, present, applied.by_name)
-        out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
-        out.contact_nodes = contact.nodes
+        held = self.support.force(mean, a, b, dt, live) - at_once
         self.state = step.state
+        return between(self.support, a, b, dt, mean, held, present, applied.by_name)
 
     def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
         """Instant at which the first utilisation reaches 1, by bisection, and the contact force then."""
@@ -112,7 +137,7 @@ class Sheet(Floe):
         while high - low > LOCATION:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if self._utilisation(step.at(middle)).max() >= 1.0 else (middle, high)
-        time = t + high * self.dt
+        time = t + high * step.dt
         return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes, step.lever))[0]
 
     # ---- long steps -------------------------------------------------------------------------------------------
@@ -164,3 +189,11 @@ class Sheet(Floe):
         self._release_loose(out, release, turned)
         if cells or out.pieces:
             out.failure = t, force
+
+
+def _halved(share: float, window: float, error: StepError) -> float:
+    """Half the share of a window of so many seconds; the error if that is too short."""
+    if 0.5 * share < SHORTEST:
+        shortest = f"{share * window * 1e3:.3g} ms, 1/{1.0 / share:.0f} of the window"
+        raise StepError(f"{error}, even in steps of {shortest}; shorten coupling.window") from error
+    return 0.5 * share
