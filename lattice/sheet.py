@@ -16,6 +16,7 @@ import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.table import THESIS, Criterion
+from lattice.energy import EnergyBooks
 from lattice.floe import LOOSE, Floe, Release
 from lattice.grid import Array, IntArray
 from lattice.implicit.engine import Engine
@@ -49,6 +50,7 @@ class Sheet(Floe):
         engine.use(dt)
         super().__init__(engine, dt, share=share, criteria=criteria)
         self.ahead = LongSteps(long_step, dt)
+        self._booked = self.energy  #: as they are after the step that is tried
 
     def set_window(self, dt: float) -> None:
         """As `Floe.set_window`; a long step, which is cut into equal windows, is given up."""
@@ -84,11 +86,10 @@ class Sheet(Floe):
         while done < 1.0:
             try:
                 step = self._settle(t + done * self.dt, share * self.dt, loads, contact, out, release)
-                reaction = self._accept(step, loads, contact)
             except StepError as error:
                 share = _halved(share, self.dt, error)
                 continue
-            parts.add(share, step, contact.nodes, reaction)
+            parts.add(share, step, contact.nodes, self._accept(step, loads, contact))
             done += share
         out.contact_mean, out.contact_nodes = parts.contact(contact.nodes)
         out.contact_end, out.reaction, out.parts = step.contact_end, parts.reaction(), self.parts
@@ -97,9 +98,13 @@ class Sheet(Floe):
         return out
 
     def _settle(self, t: float, dt: float, loads: Loads, contact: EdgeContact, out: Outcome, release: Release) -> Step:
-        """A step over ``dt`` at whose end no cell is overloaded: cells fail, worst first, until it is one."""
+        """A step over ``dt`` at whose end no cell is overloaded: cells fail, worst first, until it is one.
+
+        StepError where the contact finds no equilibrium, or the energy does not balance.
+        """
         while True:
             step = self.engine.step(t, dt, self.state, *total(loads, self.grid.nodes), contact)
+            self._booked = self._balanced(step, loads, contact)
             self.utilisation = self._utilisation(step.state)
             worst = int(np.argmax(self.utilisation))
             if self.utilisation[worst] < 1.0:
@@ -111,25 +116,25 @@ class Sheet(Floe):
             self._release_loose(out, release)
             keep(loads, self.present)
 
-    def _accept(self, step: Step, loads: Loads, contact: EdgeContact) -> Reaction:
-        """Takes the end of a step as the new state, with its energy; what has carried the sheet.
-
-        StepError, and nothing is taken, if its energy does not balance.
-        """
-        live, present, dt, books = self.live_cells, self.present, step.dt, copy(self.energy)
+    def _balanced(self, step: Step, loads: Loads, contact: EdgeContact) -> EnergyBooks:
+        """The books after a step; StepError if its energy does not balance."""
+        books, live, present = copy(self.energy), self.live_cells, self.present
         books.measure(self.state, live, present)
         before, stored = books.residual, books.stored
         books.book_step(step, loads, contact.nodes, live, present)
         error, scale = abs(books.residual - before), max(abs(books.contact), abs(books.received), books.stored, stored)
         if not error <= BALANCED * (scale + NOTHING * self.ice.E * self.ice.h**3):
             raise StepError(f"the energy of a step of the sheet is off by {error:.3g} J of {scale:.3g} J")
-        self.energy = books
-        applied = self.support.applied(loads)
+        return books
+
+    def _accept(self, step: Step, loads: Loads, contact: EdgeContact) -> Reaction:
+        """Takes the end of a step as the new state, with its energy; what has carried the sheet."""
+        live, present, applied = self.live_cells, self.present, self.support.applied(loads)
         a, b, mean = self.state, step.state, of_step(step)
         at_once = applied.held + self.energy.on_held(contact.nodes, step.contact_mean)
-        held = self.support.force(mean, a, b, dt, live) - at_once
-        self.state = step.state
-        return between(self.support, a, b, dt, mean, held, present, applied.by_name)
+        held = self.support.force(mean, a, b, step.dt, live) - at_once
+        self.state, self.energy = step.state, self._booked
+        return between(self.support, a, b, step.dt, mean, held, present, applied.by_name)
 
     def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
         """Instant at which the first utilisation reaches 1, by bisection, and the contact force then."""

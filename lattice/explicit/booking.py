@@ -70,7 +70,7 @@ class BookedFloe(Floe):
         self.energy.scheme += self._lead(left)
 
     def _lead(self, nodes: BoolArray) -> float:
-        """Damping in the half sub-step that the march lies before the last state of ``nodes`` (n,), less `ripple` [J]."""
+        """Damping in the half sub-step that the march lies before the state of ``nodes`` (n,), less `ripple` [J]."""
         cells = self.intact & nodes[self.grid.cell_nodes].all(axis=1)
         late = 0.5 * self.engine.dt * self.energy.loss_rate(self.state, cells, nodes)
         return late - self.engine.ripple(nodes)

@@ -115,11 +115,11 @@ def _text(number: int, c: dict[str, Any]) -> tuple[str, int]:
     bending = (c["E"] * 1e9 * c["h"] ** 3 / (12.0 * (1.0 - 1.0 / 9.0) * 1025.0 * 9.81)) ** 0.25
     cone = c["kind"] == "cone"
     d = max(bending / c["cells"], c["h"] / 2.5)
-    wide, sides = 2.0 * bending, "roller"
+    long, wide, sides = 6.0 * bending, 2.0 * bending, "roller"
     if cone:
         d, sides = min(d, c["diameter"] / 4.1), c["sides"]
-        wide = c["diameter"] + 3.1 * bending
-    nx, ny = round(4.0 * bending / d) + 1, 2 * round(0.5 * wide / d) + 1
+        long, wide = 4.0 * bending, c["diameter"] + 3.1 * bending
+    nx, ny = round(long / d) + 1, 2 * round(0.5 * wide / d) + 1
     values = {**c, "number": number, "nx": nx, "ny": ny, "length": (nx - 1) * d, "width": (ny - 1) * d, "sides": sides}
     values |= {"toe": c["h"] + 2.0, "radius": 0.5 * c["diameter"], "neck": 0.25 * c["diameter"]}
     return (ICE + (CONE if cone else "")).format(**values), nx * ny

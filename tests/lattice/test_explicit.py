@@ -307,6 +307,8 @@ def test_pieces_leave_at_once_and_keep_their_state():
     gone = np.concatenate(left)
     kept = sheet.state.u[gone].copy()
     assert np.abs(kept).max() > 0.0
+    assert sheet.energy.pieces.energy > 0.0
+    assert abs(sheet.energy.residual) < 1e-9 * sheet.energy.received  # with the half sub-step that they take along
     sheet.advance(1e-3 * (k + 1), [NodeLoad("pull", F, np.zeros((GRID.nodes, 3)))], NoContact(), left.append)
     np.testing.assert_array_equal(sheet.state.u[gone], kept)
     assert not sheet.present[gone].any()
