@@ -134,6 +134,19 @@ def test_a_part_that_has_turned_as_a_whole_leaves_without_a_failure(held):
     assert not sheet.present.any()
 
 
+@pytest.mark.parametrize(("sides", "leaves"), [((False, True), True), ((True, True), False)])
+def test_a_strip_that_breaks_off_between_rollers_leaves(sides, leaves):
+    """Rollers at the sides hold it across the drift only; sides that are held keep it."""
+    held = np.zeros((GRID.nodes, 2), bool)
+    held[np.concatenate((GRID.edge_nodes("y-"), GRID.edge_nodes("y+")))] = sides
+    held[GRID.edge_nodes("x-")] = True
+    sheet, out, left = Sheet(Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=held), 0.05), Outcome(), []
+    across = ((GRID.nx - 3) * (GRID.ny - 1) + np.arange(GRID.ny - 1)).tolist()
+    sheet.fail(across, ["bending"] * len(across), sheet.state, out)
+    sheet._release_loose(out, left.append)
+    assert [len(piece) for piece in left] == ([2 * GRID.ny] if leaves else [])
+
+
 # ---- steps that do not come to their end --------------------------------------------------------------------------
 
 
