@@ -157,7 +157,8 @@ def test_keys_tell_all_of_them_with_meaning_unit_range_and_default(cosim):
     assert all(row["range"] for row in found.values() if row["unit"] and not row["example"].startswith("["))
     h = found["ice.thickness"]
     assert (h["unit"], h["range"], h["required"], h["default"]) == ("m", "1 mm to 30 m", True, None)
-    assert found["coupling.window"]["default"] == "0.05 s"
+    assert found["recording.every"]["default"] == "0.5 s"
+    assert found["coupling.window"]["default"] is None  # follows from the case
     assert found["structure.kind"]["choices"] == ["cone", "multi-sided-cone", "plane", "profile"]
     assert found["structure.slope"]["example"] != found["baseline.rubble_slope"]["example"]  # by key, not by kind
     out = cosim("keys", "ice.th")[1]
