@@ -49,7 +49,7 @@ def build(scenario: Scenario) -> Scheduler:
     contact = CONTACTS[scenario.contact.model]
     port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
-    if scenario.scheme == "lockstep" and scenario.rubble.enabled:
+    if scenario.coupling.scheme == "lockstep" and scenario.rubble.enabled:
         port.lockstep(scenario.rubble.substep)
     ledger = Ledger(port.initial_mass)
     if isinstance(rubble, RubblePort):
@@ -64,7 +64,7 @@ def build(scenario: Scenario) -> Scheduler:
         rubble,
         ledger,
         scenario.window_ns,
-        SCHEMES[scenario.scheme](iteration),
+        SCHEMES[c.scheme](iteration),
         build_steering(scenario),
         scenario.duration_ns,
     )

@@ -107,6 +107,8 @@ class RunResult:
             "wall_s": self.wall_s,
             "real_time_factor": simulated / self.wall_s,
             "averaging_s": self.scenario.averaging,
+            "window_s": self.scenario.coupling.window,
+            "substep_s": self.scenario.rubble.substep,
             "peaks": self.peaks.to_json(),
             "peaks_by_phase": {phase: peaks.to_json() for phase, peaks in self.by_phase.items()},
             "trust": trust(self.data),

@@ -24,7 +24,7 @@ def simulate(scenario: Scenario, observers: Sequence[Observer]) -> dict[str, Any
     except (Exception, StoppedError) as error:
         ending = one_line(explain(error)[0] if isinstance(error, Exception) else str(error))
         for recorder in (o for o in observers if isinstance(o, Recorder)):
-            recorder.ending = ending
+            recorder.ending, recorder.failed = ending, isinstance(error, Exception)
             if isinstance(error, StoppedError) and recorder.recorded_ns > 0:
                 error.kept = str(recorder.path)
         raise

@@ -72,7 +72,7 @@ class EnergyBalance:
         if sheet:
             self._start = terms_of(sheet, rubble)
             self.terms = dict.fromkeys(self._start, 0.0)
-            self.floor = max(self._start["sheet_kinetic"], self.floor)
+            self.floor = self._start["sheet_kinetic"] or self.floor
 
     def close(self, t_ns: int, sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[str, float]:
         """Closes a window; returns the terms with the residual [J]. SimulationError if it is too large."""

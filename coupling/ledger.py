@@ -14,6 +14,7 @@ from coupling.interface import NS, HandOver, SimulationError
 
 ENERGY_TOLERANCE = 1e-3  #: of the work done on the sheet
 MASS_TOLERANCE = 1e-12  #: of the initial mass
+NOTHING = 1e-5  #: work that counts as none, as share of the energy that the floe brings along
 
 
 @dataclass
@@ -74,7 +75,7 @@ class Ledger:
     def _sheet(self, energy: Mapping[str, float]) -> float:
         """Residual of the sheet's energy relative to the largest work that was exchanged so far."""
         self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]))
-        self.sheet_energy_residual = abs(energy["sheet_energy_residual"]) / max(self._work, 1.0)
+        self.sheet_energy_residual = abs(energy["sheet_energy_residual"]) / max(self._work, NOTHING * self.energy.floor)
         return self.sheet_energy_residual
 
     def _check(self, term: str, error: float, t_ns: int, tolerance: float | None = None) -> None:
@@ -82,5 +83,5 @@ class Ledger:
         if not error <= allowed:
             raise SimulationError(
                 f"t = {t_ns / NS:.3f} s: the balance of {term} is off by {error:.3g} (allowed "
-                f"{allowed:g}); please report the scenario"
+                f"{allowed:g}); halve coupling.window, and if that does not help, please report the scenario"
             )

@@ -11,6 +11,7 @@ Other criteria are judged at the end of each block of sub-steps between two eval
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -18,10 +19,10 @@ import numpy as np
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.judge import Standing
 from lattice.criteria.table import THESIS, Criterion
+from lattice.explicit.booking import BookedFloe
 from lattice.explicit.easing import Easing
 from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import Touch, touch_at
-from lattice.explicit.layout import U_X
+from lattice.explicit.forces import touch_at
 from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release
@@ -31,17 +32,16 @@ from lattice.outcome import Outcome
 from lattice.reaction import Mean, between
 from lattice.state import State
 
-#: longest time between two evaluations of the contact law, linear in between: a test finds 1e-4 of the displacements
-#: against one evaluation in every sub-step [s]
-CONTACT_TIME = 2e-3
+#: longest time between two evaluations of the contact law, linear in between, in units of (h / g)^(1/2): 2 ms for ice
+#: of 3 m, where a test finds 1e-4 of the displacements against one evaluation in every sub-step [-]
+CONTACT_TIME = 3.617e-3
 LIVELY = 2e-7  #: change of the loss of a block, as share of the stored energy, from which each sub-step is booked
 
 
-class ExplicitSheet(Floe):
+class ExplicitSheet(BookedFloe):
     """`Floe` with waves and the inertia of the crack."""
 
     _written = (*Floe._written, "failure_times", "failed_cells", "_easing")
-    engine: ExplicitEngine
     lively = LIVELY
 
     def __init__(
@@ -52,10 +52,10 @@ class ExplicitSheet(Floe):
         contact_time: float = CONTACT_TIME,
         criteria: tuple[Criterion, ...] = THESIS,
     ):
-        """As `Floe`, with the windows of the engine; ``contact_time`` as `CONTACT_TIME` [s]."""
+        """As `Floe`, with the windows of the engine; ``contact_time`` as `CONTACT_TIME` [-]."""
         super().__init__(engine, engine.window, share=share, criteria=criteria)
-        self._contact_time = contact_time
-        self.block = max(1, int(contact_time / engine.dt))  #: sub-steps between two evaluations of the contact
+        self._contact_time = contact_time * math.sqrt(engine.ice.h / engine.ice.g)
+        self.block = max(1, int(self._contact_time / engine.dt))  #: sub-steps between two evaluations of the contact
         screened = [c.judge for c in criteria if c.judge in SCREENED][:1]
         self._screened = bool(screened)  #: the loop stops at an overloaded cell
         self._others = len(criteria) > len(screened)  #: blocks are judged at their end
@@ -128,7 +128,10 @@ class ExplicitSheet(Floe):
         e, contact = self.engine, w.contact
         self._set_cells()
         touch = touch_at(w.t, contact, edge_displacement(self.state, contact.nodes, lever_of(contact)), self.grid.ny)
-        e.start(self.state, self.present, (w.load, touch.at_once()))
+        forces = w.load, touch.at_once()
+        e.start(self.state, self.present, forces)
+        e.state(self.state, self.present, forces)
+        self.energy.scheme -= self._lead(self.present)
         self._book_half(-0.5, w, touch)
         self._ease()
 
@@ -155,8 +158,7 @@ class ExplicitSheet(Floe):
         self._book_half(0.5, w, touch)
         self.utilisation = self._utilisation(self.state)
         self.energy.measure(self.state, self.live_cells, self.present)
-        late = 0.5 * self.engine.dt * self.energy.loss_rate(self.state, self.live_cells, self.present)
-        self.energy.scheme = late - self.engine.ripple  # damping of the half sub-step that the march has not made
+        self.energy.scheme += self._lead(self.present)
         out.contact_mean, out.contact_nodes = w.contact_mean(self.dt)
         out.contact_end, out.parts = touch.force, self.parts
 
@@ -169,14 +171,17 @@ class ExplicitSheet(Floe):
         if not len(cells):
             return
         touch, ended, half = e.touch(now, w.contact), self._at(0.0), self._at(0.5)
-        self.state = e.state(self.state, self.present, (w.load, touch.at_once()))
         if out.failure is None:
             out.failure = (now - (1.0 - share[0]) * e.dt, touch.force)
         causes = self.judge.causes(ended.u, ended.q, self._eased(), cells)
         self.failed_cells += cells.tolist()
         self.failure_times += (now - (1.0 - share) * e.dt).tolist()
-        self.fail(cells.tolist(), causes, half, out)  # with x(n) . K x(n-1) / 2, what leapfrog loses
+        self.fail(cells.tolist(), causes, half, out)
+        self.energy.fracture -= self._swing(cells)
+        self._set_cells()
+        self.state, before = e.state(self.state, self.present, (w.load, touch.at_once())), self.present.copy()
         self._release_loose(out, release)
+        self._book_left(before & ~self.present, w, touch)
         w.keep(self.present)
         self._ease()
 
@@ -212,42 +217,6 @@ class ExplicitSheet(Floe):
     def _at(self, ago: float) -> State:
         u, q = self.engine.displacement(ago)
         return State(u, q, self.state.u_dot, self.state.q_dot)
-
-    # ---- energy ------------------------------------------------------------------------------------------------
-
-    def _hold(self, w: Window, time: float, hold: float) -> None:
-        """Books forces of held nodes along x [N] for a time [s]; what loads and contact bring to these is not held."""
-        on_held = self.support.held[w.load.row * self.grid.ny + w.load.column]
-        impulse = time * (hold - float(w.load.force[on_held, U_X].sum()))
-        self.energy.hold += impulse
-        w.hold += impulse
-
-    def _book(self, w: Window, out: Marched, touch: Touch) -> None:
-        """Books sub-steps that have begun with the points of the contact where ``touch`` is linear about."""
-        books, time = self.energy, out.steps * self.engine.dt
-        after = self.engine.touching(w.contact)
-        books.touch.work += out.contact_work
-        books.touch.push += time * float(out.contact[:, 0].sum())
-        books.rub.add(time, books.friction_of(after, out.contact), (after - touch.at) / time)
-        for (name, of), work in zip(w.by_name(), out.work.tolist(), strict=True):
-            book = books.load(name)
-            book.work += work
-            book.push += time * float(w.load.force[of, U_X].sum())
-        books.damping += out.loss
-
-    def _book_half(self, part: float, w: Window, touch: Touch) -> None:
-        """Work in the half sub-step by which the velocities of the march lie before the ends of a window.
-
-        With E = H + dt v(n-1/2) . (F - C v) / 2 + dt^2 a . M a / 8 for what leapfrog conserves, H, exactly; with the
-        velocity at n a force that jumps between two windows would leave dt^2 a . F / 4.
-        """
-        v, time = self.engine.get(self.engine.motion.v), part * self.engine.dt
-        f = touch.at_once()
-        self._hold(w, time, self.engine.hold() - self.energy.on_held(f.row * w.columns + f.column, f.force))
-        self.energy.touch.add(time, f.force, v[f.row * w.columns + f.column])
-        nodes = w.load.row * w.columns + w.load.column
-        for name, of in w.by_name():
-            self.energy.load(name).add(time, w.load.force[of], v[nodes[of]])
 
 
 def _apart(cells: IntArray, columns: int) -> IntArray:

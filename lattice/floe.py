@@ -47,7 +47,7 @@ class Floe(ABC):
         share: float = LOOSE,
         criteria: tuple[Criterion, ...] = THESIS,
     ):
-        """Windows last ``dt`` [s]. A piece with a node that the engine holds is not loose.
+        """Windows last ``dt`` [s]. A piece with a node that the engine holds along the drift is not loose.
 
         A free piece with less than ``share`` of the floe's area leaves the lattice (see `fragments.loose_pieces`).
         ValueError where a criterion needs a strength that the ice does not have.
@@ -55,7 +55,7 @@ class Floe(ABC):
         grid = self.grid = engine.grid
         self.ice, self.share, self.dt, self.engine = engine.ice, share, dt, engine
         self.judge = Judge(grid, engine.ice, criteria)
-        self.held = np.asarray(engine.held.any(axis=1))  #: nodes held in some direction, (nodes,)
+        self.held = np.ascontiguousarray(engine.held[:, 0])  #: nodes held along the drift, (nodes,)
         self.intact = np.ones(grid.cells, bool)
         self.present = np.ones(grid.nodes, bool)
         self.state = State.rest(grid.nodes)

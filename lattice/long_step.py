@@ -17,7 +17,7 @@ from lattice.grid import Array, BoolArray
 from lattice.implicit.engine import Engine
 from lattice.implicit.step import Step
 from lattice.loads import total
-from lattice.state import State
+from lattice.state import State, StepError
 from lattice.stock import Served
 
 #: largest estimated error of a displacement in a long step, as a share of the thickness, 0.6 mm for 3 m of ice: there
@@ -88,15 +88,21 @@ class LongSteps:
         if self._wait > 0 or self._longest == 1:
             self._wait -= 1
             return None
-        nodes = engine.grid.nodes
-        step = engine.step(t, self._windows * dt, state, *total((), nodes), contact)
-        if step.error > LONG_STEP_ERROR * engine.ice.h:
+        step = self._tried(engine, t, dt, state, contact)
+        if step is None or step.error > LONG_STEP_ERROR * engine.ice.h:
             self._wait, self._windows = self._windows, max(self._windows // 2, 2)
             return None
         start = contact.evaluate(t, edge_displacement(state, contact.nodes, lever_of(contact)))[0]
         self.under_way = LongStep(step, dt, self._windows, contact=start)
         self._windows = min(2 * self._windows, self._longest)
         return self.under_way
+
+    def _tried(self, engine: Engine, t: float, dt: float, state: State, contact: EdgeContact) -> Step | None:
+        """The step, if its contact finds an equilibrium."""
+        try:
+            return engine.step(t, self._windows * dt, state, *total((), engine.grid.nodes), contact)
+        except StepError:
+            return None
 
     def drop(self, energy: EnergyBooks, dt: float, state: State, live: BoolArray, present: BoolArray) -> None:
         """Gives up the rest of a step: the sheet goes on from the last window served, whose end is ``state``."""

@@ -3,16 +3,20 @@
 A window of length dt is solved in one step. If a cell is overloaded at its end, the instant at which its utilisation
 reached 1 is located on the step's interpolation, the cell is removed and the same window is solved again, until no
 cell is overloaded (thesis 4.2.1; one cell at a time, so that the order of a cascade is that of the utilisation).
+A step whose contact finds no equilibrium, or whose energy does not balance, is solved in halves, down to `SHORTEST`.
 
 Quiet windows are read off a long step (`lattice.long_step`). The window of a failure is always solved on its own.
 """
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
 from lattice.criteria.table import THESIS, Criterion
+from lattice.energy import EnergyBooks
 from lattice.floe import LOOSE, Floe, Release
 from lattice.grid import Array, IntArray
 from lattice.implicit.engine import Engine
@@ -20,7 +24,9 @@ from lattice.implicit.step import Step
 from lattice.loads import Loads, keep, total
 from lattice.long_step import LongSteps
 from lattice.outcome import TURNED_TOO_FAR, Outcome
-from lattice.reaction import between, of_cubic, of_step
+from lattice.part_steps import BALANCED, NOTHING, SHORTEST, Parts
+from lattice.reaction import Reaction, between, of_cubic, of_step
+from lattice.state import StepError
 
 LOCATION = 1e-4  #: part of a window to which a failure is located: 2.5 us of 25 ms, far below what the step resolves
 TURNED = 0.1  #: rotation out of plane at which a hanging piece leaves: 1 - cos = 0.5 %, the lattice is linear [rad]
@@ -44,6 +50,7 @@ class Sheet(Floe):
         engine.use(dt)
         super().__init__(engine, dt, share=share, criteria=criteria)
         self.ahead = LongSteps(long_step, dt)
+        self._booked = self.energy  #: as they are after the step that is tried
 
     def set_window(self, dt: float) -> None:
         """As `Floe.set_window`; a long step, which is cut into equal windows, is given up."""
@@ -71,40 +78,63 @@ class Sheet(Floe):
     # ---- one window -------------------------------------------------------------------------------------------
 
     def _solve_window(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
-        out = Outcome()
+        out, parts = Outcome(), Parts(self.grid.nodes)
         if self._rotation().max() > TURNED:
             self._tear_off(t, contact, out, release)
             keep(loads, self.present)
+        done, share = 0.0, 1.0  # of the window; sums of powers of two are exact
+        while done < 1.0:
+            try:
+                step = self._settle(t + done * self.dt, share * self.dt, loads, contact, out, release)
+            except StepError as error:
+                share = _halved(share, self.dt, error)
+                continue
+            parts.add(share, step, contact.nodes, self._accept(step, loads, contact))
+            done += share
+        out.contact_mean, out.contact_nodes = parts.contact(contact.nodes)
+        out.contact_end, out.reaction, out.parts = step.contact_end, parts.reaction(), self.parts
+        if out.failed:
+            self.ahead.interrupt()
+        return out
+
+    def _settle(self, t: float, dt: float, loads: Loads, contact: EdgeContact, out: Outcome, release: Release) -> Step:
+        """A step over ``dt`` at whose end no cell is overloaded: cells fail, worst first, until it is one.
+
+        StepError where the contact finds no equilibrium, or the energy does not balance.
+        """
         while True:
-            step = self.engine.step(t, self.dt, self.state, *total(loads, self.grid.nodes), contact)
-            utilisation = self._utilisation(step.state)
-            worst = int(np.argmax(utilisation))
-            if utilisation[worst] < 1.0:
-                break
+            step = self.engine.step(t, dt, self.state, *total(loads, self.grid.nodes), contact)
+            self._booked = self._balanced(step, loads, contact)
+            self.utilisation = self._utilisation(step.state)
+            worst = int(np.argmax(self.utilisation))
+            if self.utilisation[worst] < 1.0:
+                return step
             if out.failure is None:
                 out.failure = self._locate(t, step, contact)
             causes = self.judge.causes(step.state.u, step.state.q, self.standing, np.array([worst]))
             self.fail([worst], causes, self.state, out)
             self._release_loose(out, release)
             keep(loads, self.present)
-        self._accept(step, loads, contact, out)
-        self.utilisation = utilisation
-        if out.failed:
-            self.ahead.interrupt()
-        return out
 
-    def _accept(self, step: Step, loads: Loads, contact: EdgeContact, out: Outcome) -> None:
-        """Takes the end of a step as the new state, with its energy and what has carried the sheet."""
-        live, present = self.live_cells, self.present
-        self.energy.book_step(step, loads, contact.nodes, live, present)
-        applied = self.support.applied(loads)
+    def _balanced(self, step: Step, loads: Loads, contact: EdgeContact) -> EnergyBooks:
+        """The books after a step; StepError if its energy does not balance."""
+        books, live, present = copy(self.energy), self.live_cells, self.present
+        books.measure(self.state, live, present)
+        before, stored = books.residual, books.stored
+        books.book_step(step, loads, contact.nodes, live, present)
+        error, scale = abs(books.residual - before), max(abs(books.contact), abs(books.received), books.stored, stored)
+        if not error <= BALANCED * (scale + NOTHING * self.ice.E * self.ice.h**3):
+            raise StepError(f"the energy of a step of the sheet is off by {error:.3g} J of {scale:.3g} J")
+        return books
+
+    def _accept(self, step: Step, loads: Loads, contact: EdgeContact) -> Reaction:
+        """Takes the end of a step as the new state, with its energy; what has carried the sheet."""
+        live, present, applied = self.live_cells, self.present, self.support.applied(loads)
         a, b, mean = self.state, step.state, of_step(step)
         at_once = applied.held + self.energy.on_held(contact.nodes, step.contact_mean)
-        held = self.support.force(mean, a, b, self.dt, live) - at_once
-        out.reaction = between(self.support, a, b, self.dt, mean, held, present, applied.by_name)
-        out.contact_mean, out.contact_end, out.parts = step.contact_mean, step.contact_end, self.parts
-        out.contact_nodes = contact.nodes
-        self.state = step.state
+        held = self.support.force(mean, a, b, step.dt, live) - at_once
+        self.state, self.energy = step.state, self._booked
+        return between(self.support, a, b, step.dt, mean, held, present, applied.by_name)
 
     def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
         """Instant at which the first utilisation reaches 1, by bisection, and the contact force then."""
@@ -112,7 +142,7 @@ class Sheet(Floe):
         while high - low > LOCATION:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if self._utilisation(step.at(middle)).max() >= 1.0 else (middle, high)
-        time = t + high * self.dt
+        time = t + high * step.dt
         return time, contact.evaluate(time, edge_displacement(step.at(high), contact.nodes, step.lever))[0]
 
     # ---- long steps -------------------------------------------------------------------------------------------
@@ -164,3 +194,11 @@ class Sheet(Floe):
         self._release_loose(out, release, turned)
         if cells or out.pieces:
             out.failure = t, force
+
+
+def _halved(share: float, window: float, error: StepError) -> float:
+    """Half the share of a window of so many seconds; the error if that is too short."""
+    if 0.5 * share < SHORTEST:
+        shortest = f"{share * window * 1e3:.3g} ms, 1/{1.0 / share:.0f} of the window"
+        raise StepError(f"{error}, even in steps of {shortest}; shorten coupling.window") from error
+    return 0.5 * share

@@ -77,7 +77,7 @@ print(energy_terms(layer)["stepping_loss"])
 
 
 def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it(tmp_path):
-    """`stepping.advance_substeps`, unchanged, calls `books.book_step`: m (g dt)^2 / 2 a sub-step, then three times it."""
+    """`stepping.advance_substeps`, unchanged, calls `books.book_step`: m (g dt)^2 / 2, then thrice it."""
     shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
     books = tmp_path / "rubble" / "books.py"
 

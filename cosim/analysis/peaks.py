@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cosim.analysis.instants import largest
-from cosim.analysis.run_data import RunData
+from cosim.analysis.run_data import COMPONENTS, RunData
 from coupling.interface import PHASES
 
 
@@ -18,12 +18,12 @@ def at_peak(run: RunData, component: str = "fx", phase: str | None = None) -> in
 
 
 def peaks(run: RunData, phase: str | None = None) -> dict[str, dict[str, float | None]]:
-    """Fx, Fz and resultant, largest in magnitude, with their simulated times, of all phases or of one.
+    """Each component and the resultant, largest in magnitude, with their simulated times, of all phases or of one.
 
     As everywhere, a peak is the largest mean over the averaging time of the run: `cosim.analysis.sustained`.
     """
     run, out = run.lasting, dict[str, dict[str, float | None]]()
-    for name in ("fx", "fz", "f"):
+    for name in COMPONENTS:
         values, k = run.component(name, phase), at_peak(run, name, phase)
         out[name] = {"value": None, "time": None} if k is None else {"value": float(values[k]), "time": float(run.t[k])}
     return out

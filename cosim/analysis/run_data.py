@@ -29,7 +29,7 @@ class RunData:
     ledger: dict[str, Array] = field(default_factory=dict)  #: (n,) by name; nan where a window has no such term
     texts: Mapping[str, str] = field(default_factory=dict)  #: attachments by name: scenario.toml, reference.toml
     budget: dict[str, Array] = field(default_factory=dict)  #: (n,) by term, see `coupling.budget` [N]; empty if unknown
-    ended: str = "complete"  #: how the run ended, in words if it did not reach its duration
+    ended: str = "complete"  #: how the run ended, in words if it did not reach its duration or failed there
     cut: bool = False  #: the file ends before its end
 
     @property
@@ -40,7 +40,8 @@ class RunData:
         held = f"it holds {self.t_ns[-1] / NS:g} of {int(self.metadata['duration_ns']) / NS:g} s"
         if self.cut:
             return f"{self.name} is truncated (its run goes on, was killed, or the copy is not whole): {held}"
-        return f"{self.name} is of a run that did not reach its end: {self.ended}; {held}"
+        how = "failed at its end" if self.t_ns[-1] >= int(self.metadata["duration_ns"]) else "did not reach its end"
+        return f"{self.name} is of a run that {how}: {self.ended}; {held}"
 
     @property
     def t(self) -> Array:

@@ -24,13 +24,13 @@ def new(
     source: Annotated[str | None, typer.Option("--from", metavar="NAME", help="a copy of this scenario")] = None,
 ) -> None:
     """Write a commented scenario that runs."""
-    from cosim.scenario.template import CONE, SCHEMA, SLOPE, copied_text, scenario_text
+    from cosim.scenario.template import CONE, SCHEMA, SLOPE, copied_texts, scenario_text
     from cosim.show.console import print_line
 
     if cone + slope + (source is not None) > 1:
         raise InputError("--cone, --slope and --from exclude each other; give one of them")
-    text = copied_text(source) if source is not None else scenario_text(SLOPE if slope else CONE)
-    _write(folder, {"scenario.toml": text, SCHEMA: json.dumps(_schema(), indent=1) + "\n"})
+    texts = copied_texts(source) if source is not None else {"scenario.toml": scenario_text(SLOPE if slope else CONE)}
+    _write(folder, {**texts, SCHEMA: json.dumps(_schema(), indent=1) + "\n"})
     print_line(f"{folder / 'scenario.toml'}: written; edit it, then `cosim check {folder}`")
 
 

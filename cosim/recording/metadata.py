@@ -14,7 +14,7 @@ from cosim.scenario.lengths import characteristic_length
 
 FORMAT = "2"  #: of recordings; goes up with every change that an older reader would misread
 RUN, END = "run", "end"  #: names of the records: what was asked, how it ended
-COMPLETE = "complete"  #: how a run ended that reached its duration
+COMPLETE = "complete"  #: how a run ended that reached its duration and did not fail there
 SEAL = "crc32"
 
 

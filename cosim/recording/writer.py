@@ -35,7 +35,8 @@ class Recorder:
 
     def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS, force: bool = False) -> None:
         self.path, self.force = Path(path), force
-        self.ending = "it was stopped"  #: why the run ended, if it ends before its duration
+        self.ending = "it was stopped"  #: why the run ended, if it ends before its duration or in an error
+        self.failed = False  #: it ended in an error, perhaps at its very end
         self.recorded_ns = 0  #: end of the last window in the file
         self._channels = channels
         self._file: IO[bytes] | None = None
@@ -79,7 +80,8 @@ class Recorder:
             self._file = None
             drop(self.path)
             return
-        ended = COMPLETE if self.recorded_ns >= self._info.duration_ns else self.ending
+        reached = self.recorded_ns >= self._info.duration_ns
+        ended = COMPLETE if reached and not self.failed else self.ending
         self._do(self._writer.add_metadata, END, sealed({"ended": ended}))
         self._do(self._writer.finish)
         self._do(self._file.close)

@@ -18,8 +18,9 @@ from cosim.scenario.units import (
 class Coupling(Section):
     """[coupling] Time windows, and what sheet and rubble exchange in them."""
 
-    #: time window (macro step) [s]; with steering the first one
-    window: Annotated[Time, Limits("1 us", "10 s", "50 ms")] = 0.05
+    #: time window (macro step); with steering the first one. Default 50 ms (h / 1 m)^0.5, at most that, and less where
+    #: the ice drifts a tenth of a cell in it: see `cosim.scenario.chosen` [s]
+    window: Annotated[Time, Limits("1 us", "10 s", "50 ms")] = None
     #: lockstep: both meet in every sub-step of the rubble, for closing cracks and dynamic propagation, where it is the
     #: default; serial-explicit: the sheet under the last forces, then the rubble, the default else; parallel-explicit:
     #: both with the last data; serial-implicit: windows are repeated until forces and motion agree

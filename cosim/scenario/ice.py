@@ -165,8 +165,8 @@ class Fracture(Section):
     #: tensile strength of a layer where it is known [Pa]; by default found by simulating a beam test: `ice.beam_test`,
     #: or a beam of usual proportions that breaks at `ice.flexural_strength`; for closing cracks
     layer_strength: Annotated[Stress, Limits("1 kPa", "1 TPa", "400 kPa")] = None
-    #: longest step of the sheet while nothing fails and no rubble touches it [s]; for open cracks
-    longest_step: Annotated[Time, Limits("1 us", "100 s", "50 ms")] = 0.2
+    #: longest step of the sheet while nothing fails and no rubble touches it; for open cracks. Default four windows [s]
+    longest_step: Annotated[Time, Limits("1 us", "100 s", "50 ms")] = None
 
     @property
     def judged(self) -> tuple[str, ...]:

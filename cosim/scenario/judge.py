@@ -11,12 +11,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from cosim.scenario.lengths import breaking_length, characteristic_length, drift_in_run, width_at_waterline
+from lattice.floe import LOOSE
 
 NODES_PER_LENGTH = 5.0  #: least number of cells in the characteristic length
 CELLS_PER_PIECE = 3.0  #: in the breaking length
 CELLS_ACROSS = 4.0  #: across the structure
 PIECES = 0.2  #: least drift in breaking lengths
 THICKNESSES = 1.0 / 3.0  #: least size of a cell
+FLOATS_ON = LOOSE  #: share of the floe from which a piece is no block
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,14 @@ def floe(m: Any) -> Doubts:
             "sheet.length",
             f"{s.length:g} m is {s.length / length:.2g} characteristic lengths; its back is felt below 3",
         )
-    width = width_at_waterline(m)
+    width, piece = width_at_waterline(m), breaking_length(m)
+    if width is None and piece > FLOATS_ON * s.length:
+        least = piece / FLOATS_ON
+        yield Doubt(
+            "sheet.length",
+            f"a strip that breaks off is {piece / s.length:.0%} of the floe, and above {FLOATS_ON:.0%} it floats on "
+            f"as a floe of its own; use more than {least:.3g} m",
+        )
     if width is not None and s.sides != "free" and s.width < width + 3.0 * length:
         least = width + 3.0 * length
         yield Doubt(

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Self
-
 from pydantic import ValidationError, ValidationInfo, model_validator
 
 from cosim.scenario.baseline import Baseline
 from cosim.scenario.case import Case, Recording
+from cosim.scenario.chosen import filled
 from cosim.scenario.coupling import Coupling
 from cosim.scenario.ice import Drift, Fracture, Ice, Sheet, Water
 from cosim.scenario.rubble import Rubble
@@ -35,11 +34,12 @@ class ScenarioModel(Section):
     baseline: Baseline = Baseline.model_validate({})
 
     @model_validator(mode="after")
-    def _keeps_the_rules(self, info: ValidationInfo) -> Self:
+    def _keeps_the_rules(self, info: ValidationInfo) -> ScenarioModel:
+        model = filled(self)
         if info.context == WITHOUT_RULES:
-            return self
-        if broken := [fault for rule in RULES for fault in rule(self)]:
+            return model
+        if broken := [fault for rule in RULES for fault in rule(model)]:
             raise ValidationError.from_exception_data(
                 "scenario", [{"type": fault, "loc": (), "input": None} for fault in broken]
             )
-        return self
+        return model

@@ -21,7 +21,8 @@ class Rubble(Section):
     """[rubble] Broken ice as rigid blocks in vertical sections."""
 
     enabled: bool = True  #: false: pieces are taken away when they break off and counted as cleared
-    substep: Annotated[Time, Limits("1 us", "1 s", "5 ms")] = 0.005  #: constant step of the sections [s]
+    #: constant step of the sections. Default 5 ms (h / 1 m)^0.5, at most that, and a quarter of the default window [s]
+    substep: Annotated[Time, Limits("1 us", "1 s", "5 ms")] = None
     iterations: Count = 30  #: of the impulse solver; at least the depth of a chain of blocks
     columns_per_section: Count = 1  #: node columns in one section
     friction_ice_ice: SlipFriction = 0.1  #: block on block and block on sheet; by rate of slip: 0.1 to 0.7

@@ -8,7 +8,6 @@ from typing import Any
 
 from cosim.analysis.sustained import averaging_time
 from cosim.scenario.model import ScenarioModel
-from cosim.scenario.rules.times import marches
 from cosim.scenario.text import complete, to_toml
 
 
@@ -50,12 +49,6 @@ class Scenario:
         """Peaks are those of the mean load over this time [s]; see `cosim.analysis.sustained`."""
         given: float | None = self.model.recording.averaging
         return averaging_time(self.model.ice.thickness, self.model.water.gravity) if given is None else given
-
-    @property
-    def scheme(self) -> str:
-        """Name of the coupling scheme."""
-        given: str | None = self.model.coupling.scheme
-        return ("lockstep" if marches(self.model) else "serial-explicit") if given is None else given
 
     @property
     def window_ns(self) -> int:

@@ -6,10 +6,11 @@ The comments are those of the models. What is not written has its default: `cosi
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any
 
 from cosim.scenario.errors import ScenarioError
-from cosim.scenario.files import parse_toml
+from cosim.scenario.files import is_file, parse_toml, read_toml
 from cosim.scenario.finding import locate
 from cosim.scenario.keys import keys_of
 from cosim.scenario.loading import load_scenario
@@ -92,9 +93,18 @@ def scenario_text(values: Mapping[str, Any]) -> str:
     return HEAD.format(schema=SCHEMA, title=values["scenario.title"]) + "\n".join(lines) + "\n"
 
 
-def copied_text(name: str) -> str:
-    """The file of a scenario, ready to be changed; one that stands on a base is written as one file."""
+def copied_texts(name: str) -> dict[str, str]:
+    """The files of a scenario by name, ready to be changed: itself and the reference beside it."""
     file = locate(name)
+    texts = {"scenario.toml": _copied(file)}
+    reference = file.parent / "reference.toml"
+    if is_file(reference):
+        texts["reference.toml"] = read_toml(reference, ScenarioError)[0]
+    return texts
+
+
+def _copied(file: Path) -> str:
+    """The text of a scenario; of one that stands on a base as one file."""
     scenario = load_scenario(file)
     if "base" not in parse_toml(file.read_text("utf-8-sig"), str(file), ScenarioError):
         return f"#:schema ./{SCHEMA}\n" + scenario.text

@@ -12,6 +12,7 @@ from cosim.analysis import budget
 from cosim.analysis.compare import compare, reference_of
 from cosim.analysis.lights import trust, trust_lines
 from cosim.analysis.peaks import shares_at_peak
+from cosim.analysis.reference import FeatureError
 from cosim.analysis.run_data import RunData
 from cosim.analysis.summary import summary
 from cosim.baselines.beside import beside
@@ -44,7 +45,7 @@ def content(run: RunData, series: Comparison | None = None) -> dict[str, Any]:
         "over": over_text(run.averaging),
         "loads": scale_of((row["value"] for row in shares.values()), "N"),
         "compared": COMPARED,
-        "rows": _rows(run),
+        **_beside_reference(run),
         "figures": figures,
         "shares": shares,
         "series": [] if series is None else page_parts(series),
@@ -67,9 +68,13 @@ def content(run: RunData, series: Comparison | None = None) -> dict[str, Any]:
     }
 
 
-def _rows(run: RunData) -> list[tuple[str, ...]]:
-    """Features beside their reference, as text; the last column is the source."""
+def _beside_reference(run: RunData) -> dict[str, Any]:
+    """Features beside the reference that the run carries, as text, the last column the source; why there are none."""
     if "reference.toml" not in run.texts:
-        return []
-    _, reference = reference_of(run, None)
-    return [(*compare_cells(row), row.feature.source) for row in compare(run, reference)]
+        return {"rows": [], "reference_fault": ""}
+    try:
+        _, reference = reference_of(run, None)
+    except FeatureError as error:
+        return {"rows": [], "reference_fault": str(error)}
+    rows = [(*compare_cells(row), row.feature.source) for row in compare(run, reference)]
+    return {"rows": rows, "reference_fault": ""}

@@ -9,7 +9,7 @@ from cosim.analysis.compare import Row
 from cosim.analysis.lights import trust_lines
 from cosim.show.cells import COMPARED, compare_cells, over_text
 from cosim.show.console import PlainTable, new_table, print_line, stdout
-from cosim.show.scale import Scale, scale_of, seconds
+from cosim.show.scale import Scale, scale_of, seconds, significant
 from coupling.energy import LOAD_WORK, STORES
 from coupling.interface import PHASES
 
@@ -84,7 +84,8 @@ def print_run(result: dict[str, Any], detail: int = 0) -> None:
     stdout.print(peaks_table(result))
     print_line(
         f"{result['simulated_s']:g} s simulated in {result['wall_s']:.1f} s "
-        f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, {result['blocks']} blocks"
+        f"({result['real_time_factor']:.2f} x real time), {result['fragments']} fragments, {result['blocks']} blocks, "
+        f"{_steps(result)}"
     )
     if detail > 0 and result["events"]:
         stdout.print(events_table(result["events"], result["averaging_s"]))
@@ -93,6 +94,12 @@ def print_run(result: dict[str, Any], detail: int = 0) -> None:
         print_line(line)
     if result["recording"]:
         print_line(f"recording: {result['recording']}")
+
+
+def _steps(result: dict[str, Any]) -> str:
+    """Windows and sub-steps, given or chosen."""
+    window, substep = (f"{significant(1e3 * result[key])} ms" for key in ("window_s", "substep_s"))
+    return f"windows of {window}, sub-steps of {substep}"
 
 
 def result_lines(result: dict[str, Any]) -> list[str]:

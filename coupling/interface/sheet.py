@@ -17,11 +17,11 @@ class Event:
     """Something that happened to the sheet.
 
     ``kind`` is one of ``cell_failure`` (a first failure after a quiet window), ``split`` (the sheet falls into two
-    parts that both stay in the lattice), ``circumferential`` (a piece in front of the structure
-    breaks off), ``hand_over`` (a fragment has become rubble), ``breaks_again`` (a plate of the rubble has parted in
-    two), ``crack`` (a crack has passed the middle of the ice: from there on it is a hinge), ``hinge`` (cracks so deep surround a piece
-    that still is held by what presses it), ``out_of_water`` (for the first time the sheet is lifted
-    by more than its draft, where its linear foundation ends).
+    parts that both stay in the lattice), ``circumferential`` (a piece in front of the structure breaks off),
+    ``hand_over`` (a fragment has become rubble), ``breaks_again`` (a plate of the rubble has parted in two),
+    ``crack`` (a crack has passed the middle of the ice: from there on it is a hinge), ``hinge`` (cracks so deep
+    surround a piece that still is held by what presses it), ``out_of_water`` (for the first time the sheet is
+    lifted by more than its draft, where its linear foundation ends).
     """
 
     t_ns: int

@@ -10,6 +10,7 @@ force counts. A cell knows the moment at its middle, half a cell from the root, 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,6 +30,9 @@ FEWEST = 2  #: cells over the width of the beam, however large the sheet's are
 #: simulations at most; difference of the load that counts as none, and the largest one that is taken, relative
 TRIALS, CLOSE, ENOUGH = 12, 5e-3, 2e-2
 FALL = 0.7  #: share of its largest load to which a broken beam has come down
+#: time of a test and material damping of its ice in units of (h / g)^(1/2), so that a Froude copy of a beam has the
+#: same test: 6 s and 0.1 ms for ice of 3 m, slow against the waves of the beam and the swing of the plate on water
+SLOWLY, DAMPING = 10.85, 1.8e-4
 
 
 @dataclass(frozen=True)
@@ -78,17 +82,17 @@ def cut_beam(beam: Beam, d: float) -> CutBeam:
 class BeamTest:
     """A beam test with cracks that soften, close and slip."""
 
-    def __init__(self, ice: Ice, law: CrackLaw, cut: CutBeam, seconds: float = 6.0):
-        """The tip goes down by a steady speed such that theory breaks the elastic beam after half of ``seconds``."""
-        g, self.ice, self.cut = cut.grid, ice, cut
+    def __init__(self, ice: Ice, law: CrackLaw, cut: CutBeam, slowly: float = SLOWLY):
+        """The tip goes down steadily, so that theory breaks the elastic beam after half of ``slowly`` (h / g)^(1/2)."""
+        g, self.ice, self.cut, unit = cut.grid, ice, cut, math.sqrt(ice.h / ice.g)
+        seconds = slowly * unit
         edge = np.zeros(g.nodes, bool)
         for side in ("x-", "x+", "y-", "y+"):
             edge[g.edge_nodes(side)] = True
         damping = 0.1 * np.sqrt(ice.k_f * ice.rho_i * ice.h)
         springs = hrennikoff(ice)
-        self.engine = CrackingEngine(
-            g, ice, springs, seconds, law=law, held_in_plane=edge, damping=damping, alpha=1e-4, sub_steps=SLOW
-        )
+        options = {"held_in_plane": edge, "damping": damping, "alpha": DAMPING * unit, "sub_steps": SLOW}
+        self.engine = CrackingEngine(g, ice, springs, seconds, law=law, **options)
         for kick in self.engine.mesh.kick:
             kick[edge.reshape(g.nx, g.ny).nonzero()] = 0.0  # clamped: no deflection, no rotation
         sag = ice.sigma_t * cut.arm**2 / (1.5 * ice.E * ice.h)  # F L^3 / 3 E I at F = sigma w h^2 / 6 L

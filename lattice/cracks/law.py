@@ -42,14 +42,16 @@ class CrackLaw(NamedTuple):
     e_f: float  #: strain at which its crack carries no tension any more, w_c / d, at least e_0: brittle [-]
 
 
-COHESION = 700e3  #: shear strength of whole ice where none is given [Pa] (van Vliet 2018, chapter 5)
+#: shear strength of whole ice where none is given, as share of the compressive one: 700 kPa of 4 MPa (van Vliet 2018,
+#: chapter 5 and Table 6-1) [-]
+COHESION = 0.175
 
 
 def law_of(ice: Ice, fracture_energy: float, mu: float, d: float) -> CrackLaw:
     """The law for layers of strength ``ice.sigma_t`` in cells of size d [m]; ``fracture_energy`` [J/m2], 0: brittle."""
     e_0 = ice.sigma_t / ice.E
     e_f = max(e_0, 2.0 * fracture_energy / (ice.sigma_t * d))
-    cohesion = ice.sigma_shear if math.isfinite(ice.sigma_shear) else COHESION
+    cohesion = ice.sigma_shear if math.isfinite(ice.sigma_shear) else COHESION * ice.sigma_c
     return CrackLaw(ice.E, ice.nu, ice.sigma_c, cohesion, mu, e_0, e_f)
 
 

@@ -16,9 +16,9 @@ from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.stiffness import Springs
 
-#: time between two evaluations of the contact in slow interaction: against 2 ms it moves the peak of the 165 m floe by
-#: 0.1 % [s]
-SLOW_CONTACT = 5e-3
+#: time between two evaluations of the contact in slow interaction, in units of (h / g)^(1/2): 5 ms for ice of 3 m,
+#: where against 2 ms it moves the peak of the 165 m floe by 0.1 % [-]
+SLOW_CONTACT = 9.0425e-3
 
 
 @dataclass(frozen=True)

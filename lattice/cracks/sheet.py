@@ -80,8 +80,9 @@ class CrackingSheet(ExplicitSheet):
         out.failed += cells.tolist()
         lean = e.lean_strain()[:, cells]
         _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells, lean=lean), self.ice)
+        self.energy.fracture -= self._swing(cells)
         for cell, angle in zip(cells.tolist(), angles.tolist(), strict=True):
-            self.energy.book_failure(cell, half)  # with x(n) . K x(n-1) / 2, as leapfrog has it
+            self.energy.book_failure(cell, half)
             self.energy.fracture -= e.begin(cell, angle)
             self.intact[cell] = False
         self._set_cells()

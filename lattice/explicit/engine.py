@@ -92,7 +92,7 @@ class ExplicitEngine(Engine):
         self.damping = damping
         self._judge: Judge = combined_tension
         self.parts = 1  #: equal parts of a window that are whole numbers of sub-steps
-        self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
+        self._jump = np.zeros((grid.nodes, 5))  #: change of the velocities in the sub-step after the last state
         self.set_window(window)
 
     def set_window(self, window: float) -> None:
@@ -157,10 +157,7 @@ class ExplicitEngine(Engine):
         """The state now under these forces; nodes that have left keep theirs."""
         y, before = self.motion
         after = self._next_velocity(Motion(y.copy(), before), forces)
-        v, jump = 0.5 * (before + after), self.get(after - before)
-        self.ripple = 0.125 * float(
-            (self.inertia_u * jump[:, :2].ravel() ** 2).sum() + (self.inertia_q * jump[:, 2:].ravel() ** 2).sum()
-        )
+        v, self._jump = 0.5 * (before + after), self.get(after - before)
         x, x_dot, on = self.get(y - self.alpha * before), self.get(v), present[:, None]
         return State(
             np.where(on, x[:, :2], old.u),
@@ -179,6 +176,12 @@ class ExplicitEngine(Engine):
             np.where(on, v[:, :2], old.u_dot),
             np.where(on, v[:, 2:], old.q_dot),
         )
+
+    def ripple(self, nodes: BoolArray) -> float:
+        """dt^2/8 a . M a of ``nodes`` (n,), by which the energy of their last state exceeds what leapfrog conserves."""
+        square = self._jump**2
+        u, q = self.inertia_u.reshape(-1, 2) * square[:, :2], self.inertia_q.reshape(-1, 3) * square[:, 2:]
+        return 0.125 * float(u[nodes].sum() + q[nodes].sum())
 
     def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
         """Velocity after one more sub-step; ``y`` is used up, ``v`` is not."""

@@ -15,9 +15,9 @@ from lattice.implicit.linear import CrackedSystem
 from lattice.state import StepError
 
 LEVER = [1, 2, 0]  #: out-of-plane degrees of freedom that move a point above the node in x, y and z
-#: displacement below which a contact that hardly touches counts as solved: what double precision leaves of positions
-#: of some 100 m, and with 3 GN/m (E / d of the ice times the width of a cell) a force of 3 mN [m]
-CLOSED = 1e-12
+#: displacement below which a contact that hardly touches counts as solved, as share of the length of the sheet: what
+#: double precision leaves of positions; for 165 m and 3 GN/m (E / d of the ice times the width of a cell) 3 mN [-]
+CLOSED = 6e-15
 SOLVED = 1e-10  #: largest residual, as a share of what the contact moves the edge [-]
 NEWTON, HALVINGS = 100, 12  #: iterations before the step is given up; halvings of one that overshoots
 
@@ -25,8 +25,9 @@ NEWTON, HALVINGS = 100, 12  #: iterations before the step is given up; halvings 
 class Edge:
     """Points at the end of levers on nodes (m,), in the two systems of a sheet."""
 
-    def __init__(self, in_plane: CrackedSystem, out_of_plane: CrackedSystem, nodes: IntArray, lever: Lever):
-        self._in, self._out, self._lever = in_plane, out_of_plane, lever
+    def __init__(self, systems: tuple[CrackedSystem, CrackedSystem], nodes: IntArray, lever: Lever, length: float):
+        """In the plane and out of it; ``length`` of the sheet [m]."""
+        (self._in, self._out), self._lever, self._closed = systems, lever, CLOSED * length
         self._flat = lever.none
         self._u_dof = (2 * nodes[:, None] + np.arange(2)).ravel()
         self._q_dof = 3 * nodes if self._flat else (3 * nodes[:, None] + np.arange(3)).ravel()
@@ -48,9 +49,9 @@ class Edge:
                 if np.linalg.norm(residual) < (1.0 - 0.1 * 0.5**halving) * old:
                     break
             y = trial
-            if np.linalg.norm(residual) <= SOLVED * np.linalg.norm(y - free) + CLOSED:
+            if np.linalg.norm(residual) <= SOLVED * np.linalg.norm(y - free) + self._closed:
                 return f
-        raise StepError(f"contact of the sheet's edge found no equilibrium at t = {t:.4f} s: use a shorter window")
+        raise StepError("the contact of the sheet's edge finds no equilibrium")
 
     def response(self, f: Array) -> tuple[Array, Array]:
         """Displacement of all nodes, (n, 2) and (n, 3), under forces (m, 3) at the points."""

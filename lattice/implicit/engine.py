@@ -140,4 +140,5 @@ class Engine:
 
     def edge(self, nodes: IntArray, lever: Lever) -> Edge:
         """Points at the end of these levers on nodes (m,), in the systems in use."""
-        return Edge(self._in, self._out, nodes, lever)
+        length = self.grid.d * max(self.grid.nx, self.grid.ny)
+        return Edge((self._in, self._out), nodes, lever, length)

@@ -8,7 +8,7 @@ import tomllib
 import pytest
 from jsonschema import Draft202012Validator
 
-from cosim.scenario.finding import find_scenarios
+from cosim.scenario.finding import find_scenarios, locate
 from cosim.scenario.judge import JUDGES, doubts_of
 from cosim.scenario.keys import keys_of
 from cosim.scenario.loading import load_scenario
@@ -37,6 +37,8 @@ def test_a_new_scenario_from_another_one(cosim, tmp_path, name):
     assert cosim("new", tmp_path / "mine", "--from", name)[0] == 0
     assert load_scenario(tmp_path / "mine").model == load_scenario(name).model
     assert "base" not in tomllib.loads((tmp_path / "mine/scenario.toml").read_text())
+    copied = (tmp_path / "mine/reference.toml").read_text()
+    assert copied == (locate(name).parent / "reference.toml").read_text()
 
 
 def test_new_keeps_what_is_there(cosim, tmp_path):
@@ -155,7 +157,8 @@ def test_keys_tell_all_of_them_with_meaning_unit_range_and_default(cosim):
     assert all(row["range"] for row in found.values() if row["unit"] and not row["example"].startswith("["))
     h = found["ice.thickness"]
     assert (h["unit"], h["range"], h["required"], h["default"]) == ("m", "1 mm to 30 m", True, None)
-    assert found["coupling.window"]["default"] == "0.05 s"
+    assert found["recording.every"]["default"] == "0.5 s"
+    assert found["coupling.window"]["default"] is None  # follows from the case
     assert found["structure.kind"]["choices"] == ["cone", "multi-sided-cone", "plane", "profile"]
     assert found["structure.slope"]["example"] != found["baseline.rubble_slope"]["example"]  # by key, not by kind
     out = cosim("keys", "ice.th")[1]

@@ -129,6 +129,8 @@ def fake_run(monkeypatch, synthetic):
                 "wall_s": 1.0,
                 "real_time_factor": 12.0,
                 "averaging_s": 0.5,
+                "window_s": 0.05,
+                "substep_s": 0.005,
                 "trust": {"trustworthy": True, "because": [], "lights": {}},
                 "peaks": peak,
                 "peaks_by_phase": {p: peak for p in ("breaking", "rotating", "sliding")},

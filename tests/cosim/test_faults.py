@@ -195,6 +195,7 @@ def test_every_rule_can_be_broken(tmp_path):
         "structure_is_wider_than_a_cell": ["structure.waterline_radius='0.8 m'"],
         "has_a_shape": ["structure.kind='plane'"],
         "narrows_to_its_neck": ["structure.neck_radius='6 m'"],
+        "ends_at_its_tip": ["structure.toe_depth='9 m'", "structure.slope='30 deg'"],
         "profile_is_that_of_a_body": ["structure.profile=[['-1 m', '1 m'], ['-2 m', '3 m']]"],
         "ice_meets_the_slope": ["structure.top='1 cm'"],
         "rubble_lies_under_the_sheet": [

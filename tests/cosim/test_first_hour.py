@@ -38,7 +38,7 @@ def first_hour(cosim, folder):
     assert "no fault" in do(*cosim, "check", "pier", folder=folder)
     ran = json.loads(do(*cosim, "run", "pier", "-o", "run.mcap", "--json", folder=folder, timeout=900))
     told = json.loads(do(*cosim, "info", "run.mcap", "--json", folder=folder))
-    assert told["peaks"] == {c: ran["peaks"][c] for c in ("fx", "fz", "f")}
+    assert told["peaks"] == ran["peaks"]
     assert told["peaks"]["fx"]["value"] > 0.0
     assert (told["scenario"], told["simulated_s"], told["remark"]) == ("pier", 3.0, None)
     do(*cosim, "report", "run.mcap", "-o", "report.html", folder=folder)

@@ -132,7 +132,7 @@ def test_a_state_that_is_not_finite_ends_the_run(monkeypatch):
         run_scenario(scenario)
 
 
-def test_a_structure_that_is_never_touched_ends_the_run():
+def test_a_structure_that_is_never_touched_ends_the_run(cosim, tmp_path):
     """The ice drifts past a cone that stands beside the corner of a free floe."""
     options = ["sheet.nodes=[12, 12]", "scenario.duration='0.1 s'", "rubble.enabled=false"]
     scenario = load_scenario("van_vliet_2018_floe_55m_centre", options)
@@ -143,3 +143,9 @@ def test_a_structure_that_is_never_touched_ends_the_run():
         patch.setattr(Scheduler, "macro_step", lambda s: dataclasses.replace(f := step(s), load=0.0 * f.load))
         with pytest.raises(SimulationError, match=r"the structure was never touched in 0\.1 s"):
             run_scenario(scenario)
+        file = tmp_path / "run.mcap"
+        code, _, err = cosim("run", "van_vliet_2018_floe_55m_centre", *(f"--set={o}" for o in options), "-o", file)
+    assert (code, "never touched" in err) == (1, True)
+    told = json.loads(cosim("info", file, "--json")[1])
+    assert told["ended"].startswith("the structure was never touched")
+    assert "failed at its end" in told["remark"]

@@ -24,6 +24,7 @@ def test_a_structure_that_is_pressed_down_has_its_peak_below_zero():
     found = peaks(RUN)
     assert found["fz"] == {"value": -7.0, "time": 2.0}
     assert found["fx"] == {"value": 5.0, "time": 3.0}
+    assert found["fy"] == {"value": 1.0, "time": 4.0}
     assert found["f"] == {"value": pytest.approx(np.hypot(4.0, 7.0), rel=1e-12), "time": 2.0}
 
 

@@ -104,6 +104,18 @@ def test_the_page_is_self_contained(run, tmp_path):
     assert "it splits" in page
 
 
+def test_a_page_tells_what_is_wrong_with_the_reference_in_the_recording(run, tmp_path):
+    wrong = '[[feature]]\nname = "peak"\nquantity = "peek_load"\nunit = "N"\nsource = "a paper"'
+    page = tmp_path / "page.html"
+    write_report(dataclasses.replace(run, texts={"reference.toml": wrong}), page)
+    text = page.read_text()
+    assert "reference in the recording cannot be used:" in text
+    assert "unknown quantity &#39;peek_load&#39;" in text
+    assert text.count("<h2>") >= 5
+    write_report(run, page)
+    assert "cannot be used" not in page.read_text()
+
+
 def test_every_term_of_the_energy_has_its_place_in_the_figure():
     """All terms that a run can have, once each: the stack then ends at the work of the drift."""
     drawn = [name for _, names in ENERGY.values() for name in names]

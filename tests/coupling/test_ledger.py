@@ -9,6 +9,8 @@ from coupling.ledger import Ledger
 class NoBooks:
     """An energy balance of the whole system that is always closed."""
 
+    floor = 1e5
+
     def close(self, t_ns, sheet, rubble):
         return {}
 
@@ -76,7 +78,7 @@ def test_the_sheet_s_energy_is_measured_by_the_largest_work(work):
         close(book, energy=energy(-51.0, **work))
 
 
-def test_less_than_a_joule_of_work_counts_as_one():
+def test_work_below_a_share_of_what_the_floe_brings_along_counts_as_that_share():
     book = ledger()
     close(book, energy=energy(9e-4))
     assert book.sheet_energy_residual == pytest.approx(9e-4, rel=1e-12)

@@ -1,5 +1,7 @@
 """Failures within a window: located in time, ordered, with an energy balance that closes; long steps change nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from lattice.ice import Ice
 from lattice.implicit.engine import Engine
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import Sheet
+from lattice.state import StepError
 from lattice.stiffness import hrennikoff
 
 GRID = Grid(13, 12, 2.0)
@@ -129,3 +132,75 @@ def test_a_part_that_has_turned_as_a_whole_leaves_without_a_failure(held):
     assert not out.failed
     assert [len(p) for p in out.pieces] == [GRID.nodes]
     assert not sheet.present.any()
+
+
+@pytest.mark.parametrize(("sides", "leaves"), [((False, True), True), ((True, True), False)])
+def test_a_strip_that_breaks_off_between_rollers_leaves(sides, leaves):
+    """Rollers at the sides hold it across the drift only; sides that are held keep it."""
+    held = np.zeros((GRID.nodes, 2), bool)
+    held[np.concatenate((GRID.edge_nodes("y-"), GRID.edge_nodes("y+")))] = sides
+    held[GRID.edge_nodes("x-")] = True
+    sheet, out, left = Sheet(Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=held), 0.05), Outcome(), []
+    across = ((GRID.nx - 3) * (GRID.ny - 1) + np.arange(GRID.ny - 1)).tolist()
+    sheet.fail(across, ["bending"] * len(across), sheet.state, out)
+    sheet._release_loose(out, left.append)
+    assert [len(piece) for piece in left] == ([2 * GRID.ny] if leaves else [])
+
+
+# ---- steps that do not come to their end --------------------------------------------------------------------------
+
+
+def refuse(step, longest):
+    """Engine steps above ``longest`` [s] find no equilibrium."""
+
+    def refusing(self, t, dt, *arguments):
+        if dt > longest:
+            raise StepError("the contact of the sheet's edge finds no equilibrium")
+        return step(self, t, dt, *arguments)
+
+    return refusing
+
+
+def push_too_much(step, longest):
+    """Engine steps above ``longest`` [s] book a contact force that is 0.1 % too large."""
+
+    def wrong(self, t, dt, *arguments):
+        made = step(self, t, dt, *arguments)
+        if dt <= longest:
+            return made
+        return replace(made, stages=tuple(replace(s, contact=1.001 * s.contact) for s in made.stages))
+
+    return wrong
+
+
+@pytest.mark.parametrize("fault", [refuse, push_too_much])
+def test_a_step_that_misses_its_bound_is_solved_in_halves(monkeypatch, fault):
+    """Windows of 50 ms in steps of at most 15 ms are those of 12.5 ms, four by four, failures and all."""
+    fine, parts = pressed_down(6.6, dt=0.0125)
+    monkeypatch.setattr(Engine, "step", fault(Engine.step, 0.015))
+    halved, outcomes = pressed_down(6.6)
+    assert halved.energy.fracture > 0.0
+    np.testing.assert_allclose(halved.state.q, fine.state.q, rtol=1e-9, atol=1e-12)
+    np.testing.assert_array_equal(halved.intact, fine.intact)
+    assert abs(halved.energy.residual) < 1e-9 * halved.energy.contact
+    for k in (10, 80, 131):
+        four = [p.contact_mean.sum(axis=0) for p in parts[4 * k : 4 * k + 4]]
+        np.testing.assert_allclose(outcomes[k].contact_mean.sum(axis=0), np.mean(four, axis=0), rtol=1e-12)
+        lift = np.mean([p.reaction.foundation[1] for p in parts[4 * k : 4 * k + 4]])
+        assert outcomes[k].reaction.foundation[1] == pytest.approx(lift, rel=1e-12)
+    assert [cell for o in outcomes for cell in o.failed] == [cell for p in parts for cell in p.failed]
+    assert first_failure(outcomes) == pytest.approx(first_failure(parts), rel=1e-12)
+
+
+def test_below_the_shortest_step_the_key_to_change_is_told(monkeypatch):
+    monkeypatch.setattr(Engine, "step", refuse(Engine.step, 0.0))
+    text = "finds no equilibrium, even in steps of 0.781 ms, 1/64 of the window; shorten coupling.window"
+    with pytest.raises(StepError, match=text):
+        pressed_down(0.05)
+
+
+def test_a_long_step_without_equilibrium_is_a_shorter_one(monkeypatch):
+    monkeypatch.setattr(Engine, "step", refuse(Engine.step, 0.12))
+    sheet, outcomes = pressed_down(2.0, long_step=4)
+    assert len(outcomes) == 40
+    assert abs(sheet.energy.residual) < 1e-3 * sheet.energy.contact

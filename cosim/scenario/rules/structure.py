@@ -52,6 +52,19 @@ def narrows_to_its_neck(m: Any) -> Faults:
         )
 
 
+def ends_at_its_tip(m: Any) -> Faults:
+    """A cone that breaks downward and has no neck."""
+    s = m.structure
+    if None in (s.waterline_radius, s.toe_depth, s.slope) or s.neck_radius is not None or s.breaking == "upward":
+        return
+    tip = s.waterline_radius * math.tan(s.slope)
+    if s.toe_depth > tip:
+        yield fault(
+            "structure.toe_depth",
+            f"the cone ends at its tip, {tip:.4g} m deep: remove the key, or give structure.neck_radius",
+        )
+
+
 def profile_is_that_of_a_body(m: Any) -> Faults:
     """Points from the lowest to the highest."""
     s = m.structure
@@ -120,6 +133,7 @@ def ice_can_slide(m: Any) -> Faults:
 RULES = (
     has_a_shape,
     narrows_to_its_neck,
+    ends_at_its_tip,
     profile_is_that_of_a_body,
     ice_meets_the_slope,
     rubble_lies_under_the_sheet,

@@ -7,16 +7,11 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
+from cosim.scenario.chosen import marches
 from cosim.scenario.section import fault
 
 Faults = Iterator[PydanticCustomError]
 MOST_WINDOWS = 10_000_000  #: of a run
-
-
-def marches(m: Any) -> bool:
-    """Whether the sheet is on the explicit engine."""
-    f = m.fracture
-    return bool(f.cracks == "closing" or f.propagation == "dynamic")
 
 
 def lockstep_marches(m: Any) -> Faults:
