@@ -1,14 +1,13 @@
-"""Commands that simulate: run, sweep, verify."""
+"""Commands that simulate: run, verify."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from cosim.cli.grouping import grouped
 from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption, talking
 from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
@@ -18,6 +17,7 @@ from cosim.show.talk import Talk
 if TYPE_CHECKING:
     from cosim.scenario.scenario import Scenario
     from cosim.verify.case import CaseResult
+    from coupling.scheduler import Scheduler
 
 
 @talking
@@ -26,6 +26,7 @@ def run(
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
     overrides: SetOption = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and build, simulate nothing")] = False,
+    ice: Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")] = None,
     force: ForceOption = False,
     as_json: JsonOption = False,
     *,
@@ -51,16 +52,32 @@ def run(
     observers: list[Observer] = [ProgressBar(talk)]
     if output is not None:
         writable(output, ".mcap", force=force)
+    if ice is not None:
+        writable(ice, _kind(ice), force=force)
     if dry_run:
         _dry_run(loaded, about, as_json)
         return
     if output is not None:
         observers.append(Recorder(output, force=force))
-    result = simulate(loaded, observers)
+    result = simulate(loaded, observers, None if ice is None else partial(_keep_ice, ice))
     result["recording"] = None if output is None else str(output)
     for line in result_lines(result):
         talk.keep(line)
     print_json(result) if as_json else print_run(result, talk.level)
+
+
+def _kind(ice: Path) -> str:
+    return ".parquet" if ice.suffix == ".parquet" else ".ice"
+
+
+def _keep_ice(path: Path, scheduler: Scheduler) -> None:
+    """Writes what of the sheet is broken, as `sheet.broken` reads it."""
+    from cosim.ice.broken import write
+    from coupling.sheet_port import SheetPort
+
+    assert isinstance(scheduler.sheet, SheetPort)
+    with whole(path, _kind(path)) as part:
+        write(scheduler.sheet.sheet, part)
 
 
 def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
@@ -70,50 +87,6 @@ def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
 
     build(scenario)
     print_json(about) if as_json else print_check(about)
-
-
-@dataclass(frozen=True)
-class SweepFiles:
-    """What a sweep writes."""
-
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None
-    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None
-
-    def check(self) -> None:
-        """Before anything is simulated."""
-        for path, kind in ((self.output, ".csv"), (self.plot, ".png")):
-            if path is not None:
-                writable(path, kind)
-
-
-@talking
-@grouped
-def sweep_variants(
-    scenario: ScenarioArgument,
-    vary: Annotated[list[str], typer.Option("--vary", metavar="A.B=V,V", help="a key and its values, repeatable")],
-    files: SweepFiles,
-    overrides: SetOption = None,
-    grid: Annotated[bool, typer.Option("--grid/--one-at-a-time", help="all combinations, or each value alone")] = False,
-    workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
-    as_json: JsonOption = False,
-    *,
-    talk: Talk,
-) -> None:
-    """Run variants of a scenario and put their loads side by side."""
-    from cosim.study import command
-    from cosim.study.table import Table
-
-    files.check()
-    with Table(files.output) as table:
-        content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table, talk)
-        print_json(content) if as_json else command.show(content)
-    if files.plot is not None:
-        from cosim.show.tornado import tornado
-
-        with whole(files.plot, ".png") as part:
-            tornado(content, part)
-    if content["failed"]:
-        raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")
 
 
 def verify(

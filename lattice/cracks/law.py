@@ -23,6 +23,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from lattice.compiled import compiled
 from lattice.grid import Array
 from lattice.ice import Ice
@@ -31,7 +33,7 @@ N, T = range(2)  #: axes of a crack, across it and along it: last index of damag
 
 
 class CrackLaw(NamedTuple):
-    """Constants of the law, all layers and cells alike."""
+    """Constants of the law, all layers alike."""
 
     E: float  #: Young's modulus [Pa]
     nu: float  #: Poisson's ratio [-]
@@ -40,6 +42,30 @@ class CrackLaw(NamedTuple):
     mu: float  #: friction of the faces of a crack [-]
     e_0: float  #: strain sigma_t / E at which a layer begins to crack [-]
     e_f: float  #: strain at which its crack carries no tension any more, w_c / d, at least e_0: brittle [-]
+
+
+class Local(NamedTuple):
+    """The ice of each cell beside that of the law, (places,) each: at the place of its node 0, as in `Cracks`."""
+
+    E: Array  #: over that of the law
+    strength: Array  #: of every kind, over that of the law
+    thickness: Array  #: over that of the plate
+    e_0: Array  #: as in `CrackLaw`
+    e_f: Array  #: as in `CrackLaw`
+
+
+def local_of(law: CrackLaw, E: Array, strength: Array, thickness: Array) -> Local:
+    """G_f is the same everywhere, so that weaker ice softens over a wider opening; what is brittle is so everywhere."""
+    e_0 = law.e_0 * (strength / E)
+    e_f = np.maximum(e_0, law.e_f / strength) if law.e_f > law.e_0 else e_0
+    return Local(E, strength, thickness, e_0, e_f)
+
+
+@compiled(inline="always")
+def law_at(b: int, law: CrackLaw, local: Local) -> CrackLaw:
+    """The law of the cell at b."""
+    E, s = local.E[b], local.strength[b]
+    return CrackLaw(law.E * E, law.nu, law.sigma_c * s, law.cohesion * s, law.mu, local.e_0[b], local.e_f[b])
 
 
 COHESION = 700e3  #: shear strength of whole ice where none is given [Pa] (van Vliet 2018, chapter 5)
