@@ -54,11 +54,15 @@ class Local(NamedTuple):
     e_f: Array  #: as in `CrackLaw`
 
 
-def local_of(law: CrackLaw, E: Array, strength: Array, thickness: Array) -> Local:
-    """G_f is the same everywhere, so that weaker ice softens over a wider opening; what is brittle is so everywhere."""
+def local_of(law: CrackLaw, E: Array, strength: Array, thickness: Array, rigid: float | None = None) -> Local:
+    """G_f is the same everywhere, so that weaker ice softens over a wider opening.
+
+    ``rigid`` is the `softening` of the law; without it a law that is brittle is so in every cell.
+    """
+    if rigid is None:
+        rigid = law.e_f if law.e_f > law.e_0 else 0.0
     e_0 = law.e_0 * (strength / E)
-    e_f = np.maximum(e_0, law.e_f / strength) if law.e_f > law.e_0 else e_0
-    return Local(E, strength, thickness, e_0, e_f)
+    return Local(E, strength, thickness, e_0, np.maximum(e_0, rigid / strength))
 
 
 @compiled(inline="always")
@@ -74,9 +78,14 @@ COHESION = 700e3  #: shear strength of whole ice where none is given [Pa] (van V
 def law_of(ice: Ice, fracture_energy: float, mu: float, d: float) -> CrackLaw:
     """The law for layers of strength ``ice.sigma_t`` in cells of size d [m]; ``fracture_energy`` [J/m2], 0: brittle."""
     e_0 = ice.sigma_t / ice.E
-    e_f = max(e_0, 2.0 * fracture_energy / (ice.sigma_t * d))
+    e_f = max(e_0, softening(ice, fracture_energy, d))
     cohesion = ice.sigma_shear if math.isfinite(ice.sigma_shear) else COHESION
     return CrackLaw(ice.E, ice.nu, ice.sigma_c, cohesion, mu, e_0, e_f)
+
+
+def softening(ice: Ice, fracture_energy: float, d: float) -> float:
+    """Strain w_c / d of cells of size d [m] at which a crack carries nothing any more, were the cell itself rigid."""
+    return 2.0 * fracture_energy / (ice.sigma_t * d)
 
 
 class Layer(NamedTuple):
