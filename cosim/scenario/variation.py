@@ -14,7 +14,10 @@ Variation = Annotated[float, Field(ge=0, le=1)]
 
 
 class FieldSection(Section):
-    """What varies about its value in [ice], which is the mean: drawn by the seed of the scenario, or from a file."""
+    """From cell to cell about the value in [ice], the mean: drawn by the seed of the scenario, or from a file.
+
+    strength_field: strengths of every kind. thickness_field: stiffness and faces, not mass. modulus_field: E.
+    """
 
     #: standard deviation over mean. Strength: 0.14 for freshwater ice in bending (1.73 MPa, deviation 0.25 MPa: Timco
     #: and O'Brien 1994), more for sea ice; for thickness and E measure it, there is no default

@@ -19,7 +19,8 @@ from coupling.interface import Array
 
 QUANTILES = (0.05, 0.5, 0.95)
 LEVEL = 0.95  #: of all intervals
-RESAMPLES = 9999
+RESAMPLES, FEWER, DRAWS = 9999, 999, 20_000_000  #: resamples, at least, and values that are drawn for an interval
+BATCH = 1_000_000  #: values at the same time
 FEWEST = 3  #: runs from which on there is an interval
 
 
@@ -35,7 +36,8 @@ def interval(values: Array, share: float) -> list[float] | None:
     found = stats.bootstrap(
         (values,),
         lambda x, axis: np.quantile(x, share, axis=axis),
-        n_resamples=RESAMPLES,
+        n_resamples=min(RESAMPLES, max(FEWER, DRAWS // len(values))),
+        batch=max(1, BATCH // len(values)),
         confidence_level=LEVEL,
         method="percentile",
         rng=np.random.default_rng(0),
