@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from cosim.cli.grouping import grouped
 from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption, talking
 from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
@@ -20,14 +22,29 @@ if TYPE_CHECKING:
     from coupling.scheduler import Scheduler
 
 
+@dataclass(frozen=True)
+class RunFiles:
+    """What a run writes."""
+
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None
+    ice: Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")] = None
+    force: ForceOption = False
+
+    def check(self) -> None:
+        """Before anything is simulated."""
+        if self.output is not None:
+            writable(self.output, ".mcap", force=self.force)
+        if self.ice is not None:
+            writable(self.ice, _kind(self.ice), force=self.force)
+
+
 @talking
+@grouped
 def run(
     scenario: ScenarioArgument,
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
+    files: RunFiles,
     overrides: SetOption = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and build, simulate nothing")] = False,
-    ice: Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")] = None,
-    force: ForceOption = False,
     as_json: JsonOption = False,
     *,
     talk: Talk,
@@ -50,17 +67,14 @@ def run(
     for line in (*fact_lines(about["facts"]), about["cost_text"]):
         talk.detail(line)
     observers: list[Observer] = [ProgressBar(talk)]
-    if output is not None:
-        writable(output, ".mcap", force=force)
-    if ice is not None:
-        writable(ice, _kind(ice), force=force)
+    files.check()
     if dry_run:
         _dry_run(loaded, about, as_json)
         return
-    if output is not None:
-        observers.append(Recorder(output, force=force))
-    result = simulate(loaded, observers, None if ice is None else partial(_keep_ice, ice))
-    result["recording"] = None if output is None else str(output)
+    if files.output is not None:
+        observers.append(Recorder(files.output, force=files.force))
+    result = simulate(loaded, observers, None if files.ice is None else partial(_keep_ice, files.ice))
+    result["recording"] = None if files.output is None else str(files.output)
     for line in result_lines(result):
         talk.keep(line)
     print_json(result) if as_json else print_run(result, talk.level)

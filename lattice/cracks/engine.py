@@ -55,8 +55,8 @@ class CrackingEngine(ExplicitEngine):
         """As `ExplicitEngine`, with the ``law`` of the cracks; ``rigid`` as in `local_of`, for ice that varies."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
         varied = options.get("varied") or Varied.uniform(grid.cells)
-        shares = (layout.at_places(grid, values) for values in (varied.E, varied.strength, varied.thickness))
-        self.layered = LayeredCells(law, plate, local_of(law, *shares, rigid))
+        E, s, t = (layout.at_places(grid, values) for values in (varied.E, varied.strength, varied.thickness))
+        self.layered = LayeredCells(law, plate, local_of(law, E, s, t, rigid))
         self.layered.leans = self.slopes
         self.slow = options.get("sub_steps", TRUE_INERTIA).scaling > 1.0
         super().__init__(grid, ice, springs, window, **options)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -28,7 +28,6 @@ from lattice.implicit.engine import Engine
 from lattice.state import State
 from lattice.stepper import critical_step
 from lattice.stiffness import Springs
-from lattice.varied import Varied
 
 #: longest sub-step: the critical one is exact (a test runs 0.999 and 1.01 of it), a tenth is left for the contact's
 #: stiffness, which the frequency of the lattice alone does not know [-]
@@ -73,15 +72,12 @@ class ExplicitEngine(Engine):
         springs: Springs,
         window: float,
         *,
-        held_in_plane: BoolArray,
-        damping: float = 0.0,
-        alpha: float = 0.0,
         sub_steps: SubSteps = TRUE_INERTIA,
-        varied: Varied | None = None,
+        **options: Any,
     ):
         """As `Engine`; ``window`` [s] is cut into equal sub-steps. ValueError if they are not stable."""
         step, scaling = sub_steps
-        super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha, varied=varied)
+        super().__init__(grid, ice, springs, **options)
         self._thick = layout.at_cells(grid, self.varied.thickness, 1.0)
         self.inertia_u = scaling * self.M_u
         self.inertia_q = (self.M_q.reshape(-1, 3) * (1.0, scaling, scaling)).ravel()
@@ -92,7 +88,7 @@ class ExplicitEngine(Engine):
                 f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
                 f"{self.critical:.3g} s (largest frequency of the lattice, damping included)"
             )
-        self.damping = damping
+        self.damping = options.get("damping", 0.0)
         self._judge: Judge = combined_tension
         self.ripple = 0.0  #: dt^2/8 a . M a, by which the energy of a state exceeds what leapfrog conserves [J]
         self.set_window(window)
