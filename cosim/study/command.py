@@ -12,6 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from cosim.analysis.reference import Reference, parse_reference
 from cosim.errors import InputError
+from cosim.ice.fields import FIELDS
 from cosim.scenario.files import read_toml
 from cosim.scenario.loading import checked, read_scenario
 from cosim.scenario.scenario import Scenario
@@ -94,6 +95,12 @@ def plan(scenario: str, vary: Sequence[str], overrides: Sequence[str], design: D
     return Plan(base, study, design, axes, variants, reference)
 
 
+def is_random(scenario: Scenario) -> bool:
+    """Whether something in a scenario is drawn by its seed."""
+    rubble, fields = scenario.rubble, (getattr(scenario.ice, name) for name in FIELDS)
+    return (rubble.enabled and rubble.initial_volume > 0.0) or any(bool(f and f.variation) for f in fields)
+
+
 def run_sweep(the: Plan, where: Where, table: Table, talk: Talk) -> dict[str, Any]:
     """All variants with a progress bar, written as they end; the content of ``--json``.
 
@@ -101,6 +108,10 @@ def run_sweep(the: Plan, where: Where, table: Table, talk: Talk) -> dict[str, An
     """
     for text in the.base.warnings:
         talk.warn(text)
+    if the.design.seeds and not is_random(the.base):
+        talk.warn(
+            "a seed changes nothing here: give rubble.initial_volume, or ice that varies (ice.strength_field.variation)"
+        )
     for line in fact_lines(judged(the.base)["facts"]):
         talk.detail(line)
     known: dict[int, Row] = {}

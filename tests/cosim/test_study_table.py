@@ -13,10 +13,11 @@ import pyarrow.parquet as pq
 import pytest
 
 from cosim.errors import FailedError, InputError
+from cosim.scenario.loading import load_scenario
 from cosim.show.talk import QUIET, Talk
 from cosim.study import parquet
 from cosim.study.cluster import Cluster
-from cosim.study.command import Where, plan, run_sweep, table_of
+from cosim.study.command import Where, is_random, plan, run_sweep, table_of
 from cosim.study.design import Design
 from cosim.study.parquet import ParquetTable, known_rows
 from cosim.study.pool import Processes
@@ -204,6 +205,17 @@ def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
     with pytest.raises(FailedError, match="no scheduler answers") as error:
         list(Cluster("tcp://127.0.0.1:9").run([(0, Variant())], slow))
     assert "\n" not in str(error.value)
+
+
+def test_a_seed_that_changes_nothing_is_pointed_out():
+    def random(*overrides):
+        return is_random(load_scenario(CASE, overrides))
+
+    assert random(*TINY)
+    assert not random(*TINY, "rubble.initial_volume='0 m^3'")
+    assert not random(*TINY, "rubble.enabled=false")
+    assert not random(*TINY, "rubble.enabled=false", "ice.modulus_field={variation=0.0}")
+    assert random(*TINY, "rubble.enabled=false", "ice.modulus_field={variation=0.1}")
 
 
 @pytest.mark.parametrize(
