@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from cosim.errors import InputError
+from cosim.ice.broken import broken
+from cosim.ice.fields import varied
 from cosim.loads import loads_of
 from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import NS, RubbleParticipant, Structure
+from coupling.interface import NS, BoolArray, RubbleParticipant, Structure
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
 from coupling.scheduler import Scheduler
@@ -28,6 +32,7 @@ from lattice.criteria.table import chosen
 from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
+from lattice.fragments import front_rows
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.implicit.engine import Engine
@@ -51,7 +56,7 @@ def build(scenario: Scenario) -> Scheduler:
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     if scenario.coupling.scheme == "lockstep" and scenario.rubble.enabled:
         port.lockstep(scenario.rubble.substep)
-    ledger = Ledger(port.initial_mass)
+    ledger = Ledger(port.initial_mass if sheet.present.all() else port.mass)
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
         if scenario.rubble.initial_volume > 0.0:
@@ -116,6 +121,34 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     s = scenario.sheet
     front = structure.foremost_x(ice.freeboard if structure.faces_down else ice.freeboard - ice.h)
     grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
+    state = None if not s.broken else broken((scenario.folder or Path()) / s.broken, grid)
+    if state is not None:
+        grid = replace(grid, x0=grid.x0 + room_before(structure, ice, grid, state.gone))
+    sheet = _whole_sheet(scenario, ice, grid)
+    if state is not None:
+        try:
+            sheet.begin_broken(state.gone, state.cracked, state.angle)
+        except ValueError as error:
+            raise InputError(f"sheet.broken = {s.broken}: {error}") from error
+    return sheet
+
+
+def room_before(structure: Structure, ice: Ice, grid: Grid, gone: BoolArray) -> float:
+    """How far a floe without the nodes that are ``gone`` (nodes,) can come forward until it touches [m]."""
+    row = front_rows(grid, ~gone)
+    column = np.flatnonzero(row >= 0)
+    row = row[column]
+    lead = np.where(row == grid.nx - 1, 0.0, 0.5 * grid.d)
+    z = ice.freeboard if structure.faces_down else ice.freeboard - ice.h
+    between = structure.face_x(grid.y0 + column * grid.d, z) - (grid.x0 + row * grid.d + lead)
+    if not np.isfinite(between).any():
+        raise InputError("sheet.broken: no ice is left before the structure; leave some of it")
+    return float(np.nanmin(between))
+
+
+def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
+    """The floe before anything is broken."""
+    s = scenario.sheet
     held = np.zeros((grid.nodes, 2), bool)
     if s.back != "free":
         held[grid.edge_nodes("x-")] = (True, s.back == "held")
@@ -126,6 +159,7 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     springs = STIFFNESS_SETS[s.stiffness](ice)
     criteria = chosen(scenario.fracture.judged)
     options: dict[str, Any] = {"held_in_plane": held, "damping": damping, "alpha": alpha}
+    options["varied"] = varied(scenario, grid)
     dynamic = scenario.fracture.propagation == "dynamic"
     if scenario.fracture.cracks == "closing":
         measured = build_measured(scenario)

@@ -33,12 +33,16 @@ MAGIC = {
     ".png": b"\x89PNG",
     ".html": b"<!doctype html",
     ".csv": b"variant,",
+    ".parquet": b"PAR1",
+    ".rows": b"# cosim rows",
+    ".ice": b'"x","y","what"',
     ".log": b"# cosim log",
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists
 GROWS = {
     ".mcap": "name another file, or give --force to write over it",
     ".csv": "name another file, or remove it",
+    ".parquet": "give --resume to go on with it, or name another file",
 }
 
 

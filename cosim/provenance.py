@@ -10,7 +10,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parent
 COMMIT = PACKAGE / "commit.txt"  #: written when a wheel or an archive of the sources is built
-LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "pymunk", "mcap", "protobuf", "pydantic", "pint")
+LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "pymunk", "gstools", "mcap", "protobuf", "pydantic", "pint")
 
 
 def version() -> str:

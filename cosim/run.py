@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -134,8 +134,13 @@ def event_json(e: Event) -> dict[str, Any]:
     }
 
 
-def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunResult:
-    """Simulates a scenario to its end; observers see every window. They are closed by whoever made them."""
+def run_scenario(
+    scenario: Scenario, observers: Sequence[Observer] = (), at_end: Callable[[Scheduler], None] | None = None
+) -> RunResult:
+    """Simulates a scenario to its end; observers see every window. They are closed by whoever made them.
+
+    ``at_end`` is called with all participants when the last window is done.
+    """
     began = time.perf_counter()
     result = RunResult(scenario)
     with threadpool_limits(1):  # linear algebra adds in the same order on every machine: same scenario, same bits
@@ -151,6 +156,8 @@ def run_scenario(scenario: Scenario, observers: Sequence[Observer] = ()) -> RunR
                 observer.on_frame(frame)
     _finish(result, scheduler)
     _was_touched(result)
+    if at_end is not None:
+        at_end(scheduler)
     result.wall_s = time.perf_counter() - began
     return result
 

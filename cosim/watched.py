@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from cosim.errors import explain
 from cosim.observer import Observer
@@ -12,14 +12,22 @@ from cosim.recording.writer import Recorder
 from cosim.scenario.scenario import Scenario
 from cosim.signals import StopAfterWindow, StoppedError
 
+if TYPE_CHECKING:
+    from coupling.scheduler import Scheduler
 
-def simulate(scenario: Scenario, observers: Sequence[Observer]) -> dict[str, Any]:
-    """Run and close the observers whatever happens; recordings tell how it ended. What ``cosim run --json`` prints."""
+
+def simulate(
+    scenario: Scenario, observers: Sequence[Observer], at_end: Callable[[Scheduler], None] | None = None
+) -> dict[str, Any]:
+    """Run and close the observers whatever happens; recordings tell how it ended. What ``cosim run --json`` prints.
+
+    ``at_end`` as in `cosim.run.run_scenario`.
+    """
     from cosim.run import run_scenario
 
     watching = [*observers, StopAfterWindow()]
     try:
-        result: dict[str, Any] = run_scenario(scenario, watching).to_json()
+        result: dict[str, Any] = run_scenario(scenario, watching, at_end).to_json()
         return result
     except (Exception, StoppedError) as error:
         ending = one_line(explain(error)[0] if isinstance(error, Exception) else str(error))

@@ -9,12 +9,15 @@ Each spring is a row b of a table with energy 1/2 (b . q)^2, so a cell's stiffne
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import scipy.sparse as sp
 
 from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.stiffness import Springs
+from lattice.varied import kinds
 
 AXIAL = ((0, 1, 0), (2, 3, 0), (0, 2, 1), (1, 3, 1))  #: first node, second node, direction (0 = x, 1 = y)
 DIAGONAL = ((0, 3, 1.0), (2, 1, -1.0))  #: first node, second node, sign of y along the connection
@@ -67,17 +70,46 @@ def cell_dof(grid: Grid, per_node: int) -> IntArray:
     return (grid.cell_nodes[:, :, None] * per_node + np.arange(per_node)).reshape(grid.cells, -1)
 
 
-def assemble(grid: Grid, rows: Array, intact: BoolArray | None = None) -> sp.csc_matrix:
-    """Stiffness of all intact cells from the spring table of one cell, (n, n) with n = dof of the grid [SI]."""
+class CellSprings(NamedTuple):
+    """Spring table of one cell, and by how much the springs of each cell are stiffer."""
+
+    rows: Array  #: (springs, dof of a cell)
+    share: Array  #: (cells, 2), see `lattice.varied`
+
+
+class CellStiffness(NamedTuple):
+    """Stiffness of cells of several kinds."""
+
+    K: Array  #: (kinds, dof of a cell, dof of a cell)
+    which: IntArray  #: (cells,) kind of each cell
+
+
+def cell_stiffness(rows: Array, share: Array) -> CellStiffness:
+    """From the spring table of one cell and by how much those of each are stiffer, (cells, 2)."""
+    if (share == share[0]).all():
+        each, which = share[:1], np.zeros(len(share), np.int64)
+    else:
+        each, which = np.unique(share, axis=0, return_inverse=True)
+    kind = kinds(rows)
+    scaled = (np.sqrt(values[kind])[:, None] * rows for values in each)
+    return CellStiffness(np.array([b.T @ b for b in scaled]), which.reshape(-1))
+
+
+def assemble(grid: Grid, rows: Array, intact: BoolArray | None = None, share: Array | None = None) -> sp.csc_matrix:
+    """Stiffness of all intact cells from the spring table of one cell, (n, n) with n = dof of the grid [SI].
+
+    ``share`` as in `cell_stiffness`; without it all cells are alike.
+    """
     per_node = rows.shape[1] // 4
+    cells = cell_stiffness(rows, np.ones((grid.cells, 2)) if share is None else share)
     dof = cell_dof(grid, per_node)
     if intact is not None:
         dof = dof[intact]
-    K_cell = rows.T @ rows
+    which = cells.which if intact is None else cells.which[intact]
     m = dof.shape[1]
     i = np.repeat(dof, m, axis=1).ravel()
     j = np.tile(dof, (1, m)).ravel()
-    data = np.tile(K_cell.ravel(), len(dof))
+    data = cells.K[which].ravel()
     n = grid.nodes * per_node
     return sp.coo_matrix((data, (i, j)), shape=(n, n)).tocsc()
 

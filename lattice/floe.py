@@ -54,7 +54,7 @@ class Floe(ABC):
         """
         grid = self.grid = engine.grid
         self.ice, self.share, self.dt, self.engine = engine.ice, share, dt, engine
-        self.judge = Judge(grid, engine.ice, criteria)
+        self.judge = Judge(grid, engine.ice, criteria, engine.varied)
         self.held = np.ascontiguousarray(engine.held[:, 0])  #: nodes held along the drift, (nodes,)
         self.intact = np.ones(grid.cells, bool)
         self.present = np.ones(grid.nodes, bool)
@@ -143,6 +143,30 @@ class Floe(ABC):
         self.intact[cells] = False
         if len(cells):
             self.engine.remove(cells)
+
+    def begin_broken(self, gone: BoolArray, cracked: IntArray, angle: Array) -> None:
+        """Cracks and lost ice from before the first window: nodes that are ``gone`` (nodes,), ``cracked`` cells (k,).
+
+        Cracks are through and closed, ``angle`` (k,) is that of their normals from the x axis [rad]. ValueError where
+        they cut off what nothing holds.
+        """
+        self.present[gone] = False
+        self._begin_cracked(cracked, angle)
+        out = np.flatnonzero(gone[self.grid.cell_nodes].any(axis=1))
+        self.intact[out] = False
+        self.engine.remove(out)
+        pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share)
+        if pieces:
+            x, y = self.grid.xy[pieces[0][0]] - self.grid.xy[0]
+            raise ValueError(
+                f"cracks cut {len(pieces)} pieces off that nothing holds, the first at x = {x:g} m, y = {y:g} m from "
+                "the rear corner; say that they are gone, or leave a crack out"
+            )
+        self.energy.measure(self.state, self.live_cells, self.present)
+
+    def _begin_cracked(self, cells: IntArray, angle: Array) -> None:  # noqa: ARG002  open cracks have no direction
+        self.intact[cells] = False
+        self.engine.remove(cells)
 
     def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
         """Books ice that has left with its ``nodes``; ``live`` (cells,) are the cells that were live before."""

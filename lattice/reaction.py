@@ -22,7 +22,7 @@ from lattice.grid import Array, BoolArray, IntArray
 from lattice.implicit.engine import Engine
 from lattice.implicit.step import GAMMA, Step
 from lattice.loads import Loads
-from lattice.springs import SpringTable, spring_force
+from lattice.springs import spring_force
 from lattice.state import State
 
 Pair = tuple[float, float]  #: along x and z [N]
@@ -76,7 +76,7 @@ class Support:
         self._around, local = np.unique(grid.cell_nodes[self._cells], return_inverse=True)  # nodes of these cells
         local = local.reshape(-1, 4)
         dof = (2 * local[:, :, None] + np.arange(2)).reshape(len(local), 8)
-        self._springs = SpringTable(dof, engine.springs_u.place, engine.springs_u.value)
+        self._springs = engine.springs_u.of_cells(self._cells, dof)
         self._reacts = np.flatnonzero(self.held[self._around])
         self.coefficients = Coefficients(engine.k_f, engine.C_q, engine.inertia_q, engine.inertia_u)
 

@@ -9,6 +9,7 @@ import numpy as np
 from lattice.assembly import cell_dof
 from lattice.compiled import compiled
 from lattice.grid import Array, BoolArray, Grid, IntArray
+from lattice.varied import kinds
 
 TOUCHED = 4  #: dof of a cell with which one spring is connected, at most
 
@@ -19,15 +20,22 @@ class SpringTable(NamedTuple):
     dof: IntArray  #: (cells, dof of a cell)
     place: IntArray  #: (springs, 4) places in a row of ``dof``
     value: Array  #: (springs, 4) roots of stiffness [sqrt(N/m)], or 0
+    kind: IntArray  #: (springs,) column of ``share``
+    share: Array  #: (cells, 2) by how much the springs of a cell are stiffer, see `lattice.varied`
 
     @classmethod
-    def of(cls, grid: Grid, rows: Array) -> SpringTable:
-        """From a spring table (springs, dof of a cell) that holds for all cells of a grid."""
+    def of(cls, grid: Grid, rows: Array, share: Array | None = None) -> SpringTable:
+        """From a spring table (springs, dof of a cell) that holds for all cells of a grid, but for ``share``."""
         place, value = np.zeros((len(rows), TOUCHED), np.int64), np.zeros((len(rows), TOUCHED))
         for k, row in enumerate(rows):
             at = np.flatnonzero(row)
             place[k, : len(at)], value[k, : len(at)] = at, row[at]
-        return cls(cell_dof(grid, rows.shape[1] // 4), place, value)
+        share = np.ones((grid.cells, 2)) if share is None else share
+        return cls(dof=cell_dof(grid, rows.shape[1] // 4), place=place, value=value, kind=kinds(rows), share=share)
+
+    def of_cells(self, cells: IntArray, dof: IntArray) -> SpringTable:
+        """The springs of some cells (k,), fastened at other places ``dof`` (k, dof of a cell)."""
+        return self._replace(dof=dof, share=self.share[cells])
 
 
 @compiled(inline="always")
@@ -47,7 +55,7 @@ def spring_energy(springs: SpringTable, live: BoolArray, x: Array) -> float:
         if live[c]:
             for k in range(springs.place.shape[0]):
                 e = elongation(springs, x, c, k)
-                total += e * e
+                total += springs.share[c, springs.kind[k]] * e * e
     return 0.5 * total
 
 
@@ -58,7 +66,7 @@ def spring_force(springs: SpringTable, live: BoolArray, x: Array) -> Array:
     for c in range(springs.dof.shape[0]):
         if live[c]:
             for k in range(springs.place.shape[0]):
-                e = elongation(springs, x, c, k)
+                e = springs.share[c, springs.kind[k]] * elongation(springs, x, c, k)
                 for i in range(TOUCHED):
                     out[springs.dof[c, springs.place[k, i]]] += e * springs.value[k, i]
     return out
@@ -71,7 +79,7 @@ def pull_on(springs: SpringTable, cells: IntArray, live: BoolArray, chosen: Bool
     for c in cells:
         if live[c]:
             for k in range(springs.place.shape[0]):
-                e = elongation(springs, x, c, k)
+                e = springs.share[c, springs.kind[k]] * elongation(springs, x, c, k)
                 for i in range(TOUCHED):
                     if chosen[springs.dof[c, springs.place[k, i]]]:
                         total += e * springs.value[k, i]

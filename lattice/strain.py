@@ -84,6 +84,7 @@ class CellState:
     d: float  #: cell size [m]
     limit: Array | None = None  #: (cells,) of the tensile criteria where cells are beside crack tips [Pa]
     lean: Array | None = None  #: (3, cells) membrane strain that u does not have: xx, yy, shear in engineering measure
+    thick: Array | None = None  #: (cells,) thickness over that of the ice: the faces lie further out, curvature is more
 
     @classmethod
     def of(
@@ -94,9 +95,10 @@ class CellState:
         cells: IntArray | None = None,
         limit: Array | None = None,
         lean: Array | None = None,
+        thick: Array | None = None,
     ) -> CellState:
         """The given cells or all, from u (nodes, 2) and q = (w, phi_x, phi_y) (nodes, 3)."""
-        return cls(grid.cell_nodes if cells is None else grid.cell_nodes[cells], u, q, grid.d, limit, lean)
+        return cls(grid.cell_nodes if cells is None else grid.cell_nodes[cells], u, q, grid.d, limit, lean, thick)
 
     def limit_or(self, strength: float) -> Array | float:
         """The tensile limit of each cell, or this strength [Pa] where the state is judged without a sheet around."""
@@ -109,6 +111,9 @@ class CellState:
         if self.lean is not None:
             xx, yy, xy = self.lean
             found = found._replace(e11=found.e11 + xx, e22=found.e22 + yy, e12=found.e12 + 0.5 * xy)
+        if self.thick is not None:
+            t = self.thick
+            found = found._replace(k11=t * found.k11, k22=t * found.k22, k12=t * found.k12)
         return found
 
     @cached_property
@@ -123,7 +128,8 @@ class CellState:
     @cached_property
     def bending(self) -> Connections:
         """Curvature of each connection [1/m]."""
-        return Connections.of(self.q[self.nodes][..., 1:], self.d)
+        turned = self.q[self.nodes][..., 1:]
+        return Connections.of(turned if self.thick is None else self.thick[:, None, None] * turned, self.d)
 
     @cached_property
     def diagonal(self) -> Array:

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cosim.cli import authoring, recordings, scenarios, simulate
+from cosim.cli import authoring, recordings, scenarios, simulate, sweeping
 from cosim.errors import explain
 from cosim.plain import one_line
 from cosim.signals import StoppedError, handled
@@ -29,7 +29,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "keys": authoring.keys,
     "check": authoring.check,
     "run": simulate.run,
-    "sweep": simulate.sweep_variants,
+    "sweep": sweeping.sweep,
     "replay": recordings.replay,
     "compare": recordings.compare,
     "baseline": scenarios.baseline,

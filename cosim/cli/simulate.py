@@ -1,8 +1,9 @@
-"""Commands that simulate: run, sweep, verify."""
+"""Commands that simulate: run, verify."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,15 +19,32 @@ from cosim.show.talk import Talk
 if TYPE_CHECKING:
     from cosim.scenario.scenario import Scenario
     from cosim.verify.case import CaseResult
+    from coupling.scheduler import Scheduler
+
+
+@dataclass(frozen=True)
+class RunFiles:
+    """What a run writes."""
+
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None
+    ice: Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")] = None
+    force: ForceOption = False
+
+    def check(self) -> None:
+        """Before anything is simulated."""
+        if self.output is not None:
+            writable(self.output, ".mcap", force=self.force)
+        if self.ice is not None:
+            writable(self.ice, _kind(self.ice), force=self.force)
 
 
 @talking
+@grouped
 def run(
     scenario: ScenarioArgument,
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None,
+    files: RunFiles,
     overrides: SetOption = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and build, simulate nothing")] = False,
-    force: ForceOption = False,
     as_json: JsonOption = False,
     *,
     talk: Talk,
@@ -49,18 +67,31 @@ def run(
     for line in (*fact_lines(about["facts"]), about["cost_text"]):
         talk.detail(line)
     observers: list[Observer] = [ProgressBar(talk)]
-    if output is not None:
-        writable(output, ".mcap", force=force)
+    files.check()
     if dry_run:
         _dry_run(loaded, about, as_json)
         return
-    if output is not None:
-        observers.append(Recorder(output, force=force))
-    result = simulate(loaded, observers)
-    result["recording"] = None if output is None else str(output)
+    if files.output is not None:
+        observers.append(Recorder(files.output, force=files.force))
+    result = simulate(loaded, observers, None if files.ice is None else partial(_keep_ice, files.ice))
+    result["recording"] = None if files.output is None else str(files.output)
     for line in result_lines(result):
         talk.keep(line)
     print_json(result) if as_json else print_run(result, talk.level)
+
+
+def _kind(ice: Path) -> str:
+    return ".parquet" if ice.suffix == ".parquet" else ".ice"
+
+
+def _keep_ice(path: Path, scheduler: Scheduler) -> None:
+    """Writes what of the sheet is broken, as `sheet.broken` reads it."""
+    from cosim.ice.broken import write
+    from coupling.sheet_port import SheetPort
+
+    assert isinstance(scheduler.sheet, SheetPort)
+    with whole(path, _kind(path)) as part:
+        write(scheduler.sheet.sheet, part)
 
 
 def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
@@ -70,50 +101,6 @@ def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:
 
     build(scenario)
     print_json(about) if as_json else print_check(about)
-
-
-@dataclass(frozen=True)
-class SweepFiles:
-    """What a sweep writes."""
-
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="write the table (.csv), SI units")] = None
-    plot: Annotated[Path | None, typer.Option(help="draw the peaks against the base (.png)")] = None
-
-    def check(self) -> None:
-        """Before anything is simulated."""
-        for path, kind in ((self.output, ".csv"), (self.plot, ".png")):
-            if path is not None:
-                writable(path, kind)
-
-
-@talking
-@grouped
-def sweep_variants(
-    scenario: ScenarioArgument,
-    vary: Annotated[list[str], typer.Option("--vary", metavar="A.B=V,V", help="a key and its values, repeatable")],
-    files: SweepFiles,
-    overrides: SetOption = None,
-    grid: Annotated[bool, typer.Option("--grid/--one-at-a-time", help="all combinations, or each value alone")] = False,
-    workers: Annotated[int, typer.Option("-j", "--jobs", min=1, help="variants that run at the same time")] = 1,
-    as_json: JsonOption = False,
-    *,
-    talk: Talk,
-) -> None:
-    """Run variants of a scenario and put their loads side by side."""
-    from cosim.study import command
-    from cosim.study.table import Table
-
-    files.check()
-    with Table(files.output) as table:
-        content = command.run_sweep(scenario, vary, overrides or (), grid, workers, table, talk)
-        print_json(content) if as_json else command.show(content)
-    if files.plot is not None:
-        from cosim.show.tornado import tornado
-
-        with whole(files.plot, ".png") as part:
-            tornado(content, part)
-    if content["failed"]:
-        raise FailedError(f"{content['failed']} of {len(content['variants'])} variants failed; their lines say why")
 
 
 def verify(

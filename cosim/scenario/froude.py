@@ -84,8 +84,16 @@ def froude_copy(scenario: Scenario, factor: Fraction) -> Copy:
     told = _whole_nanoseconds(table, scenario, factor)
     if scenario.model.rubble.friction_ice_ice == "rate-dependent":
         told.append("rubble.friction_ice_ice: rate-dependent friction knows a velocity and does not scale")
+    told += [f"{key} = {name}: its x and y are in metres and are not scaled" for key, name in _files(scenario)]
     head = f"# Froude copy of {scenario.name}: lengths by {factor}, times by its root, masses by its cube.\n\n"
     return Copy(head + to_toml(table), tuple(done), tuple(told))
+
+
+def _files(scenario: Scenario) -> list[tuple[str, str]]:
+    """Keys that name files of places on the sheet, and these files."""
+    fields = ("strength_field", "thickness_field", "modulus_field")
+    named = [(f"ice.{f}.file", field.file) for f in fields if (field := getattr(scenario.ice, f)) is not None]
+    return [(key, name) for key, name in (*named, ("sheet.broken", scenario.sheet.broken)) if name]
 
 
 def _scaled(

@@ -26,6 +26,7 @@ from cosim.scenario.units import (
     Velocity,
     list_of,
 )
+from cosim.scenario.variation import FieldSection
 
 
 def _two_counts(value: object) -> object:
@@ -100,6 +101,9 @@ class Ice(Section):
     #: alpha of 2.3.3, proportional to stiffness [s]
     material_damping: Annotated[TimeOrZero, Limits("0 s", "1 s", "1 ms")] = 0.0
     beam_test: BeamTest | None = None
+    strength_field: FieldSection | None = None  # of every kind of strength
+    thickness_field: FieldSection | None = None  # of stiffness and of bending, not of mass
+    modulus_field: FieldSection | None = None  # of Young's modulus
 
 
 class Water(Section):
@@ -129,6 +133,10 @@ class Sheet(Section):
     #: in plane; a roller holds the ice along the drift, not across
     back: Literal["held", "roller", "free"] = Field(examples=["held"])
     sides: Literal["held", "roller", "free"] = "free"  #: in plane; a roller holds the ice across the drift, not along
+    #: cracks and lost ice that are there when the run begins: a table with columns x, y [m] from the rear corner y_min,
+    #: what (crack or gone) and angle [deg] of the crack's normal, as `cosim run --ice` writes it; or a recording of a
+    #: run with the same sheet
+    broken: str = Field("", max_length=500, examples=["ice.csv"])
 
     @property
     def spacing(self) -> float:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from cosim.errors import FailedError
 from cosim.show.cells import over_text
 from cosim.show.scale import scale_of
-from cosim.study.sweep import Row
+from cosim.study.task import Row
 
 
 def tornado(content: dict[str, Any], out: Path) -> None:

@@ -1,74 +1,169 @@
-"""The command `cosim sweep`: progress, table, CSV, JSON."""
+"""The command `cosim sweep`: what runs, where, and what came out as one object."""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from cosim.scenario.finding import locate
-from cosim.scenario.loading import load_scenario
-from cosim.show.cells import over_text
+from cosim.analysis.reference import Reference, parse_reference
+from cosim.errors import InputError
+from cosim.ice.fields import FIELDS
+from cosim.scenario.files import read_toml
+from cosim.scenario.loading import checked, read_scenario
+from cosim.scenario.scenario import Scenario
 from cosim.show.check import fact_lines, judged
-from cosim.show.console import as_line, new_table, print_line, stderr, stdout
+from cosim.show.console import as_line, stderr
 from cosim.show.scale import scale_of
+from cosim.show.sweep_tables import show
 from cosim.show.talk import QUIET, Talk
 from cosim.signals import StoppedError
-from cosim.study.sweep import Row, sweep
-from cosim.study.table import Table
-from cosim.study.variants import parse_axis, variants
-
-COLUMNS = (
-    "variant",
-    "Fx",
-    "at [s]",
-    "ratio",
-    "Fz",
-    "at [s]",
-    "ratio",
-    "breaking",
-    "rotating",
-    "sliding",
-    "mean Fx",
-    "wall [s]",
-)
+from cosim.study.cluster import Cluster, program
+from cosim.study.design import SAMPLED, Design
+from cosim.study.parquet import ParquetTable, known_rows
+from cosim.study.pool import Processes
+from cosim.study.sensitivity import indices
+from cosim.study.statistics import ensembles
+from cosim.study.sweep import Runner, sweep, with_ratios
+from cosim.study.table import CsvTable, NoTable, Table
+from cosim.study.task import Row, Study
+from cosim.study.variants import SEED, Axis, Range, Variant, parse_axis
 
 
-def run_sweep(
-    scenario: str, vary: Sequence[str], overrides: Sequence[str], grid: bool, workers: int, table: Table, talk: Talk
-) -> dict[str, Any]:
-    """All variants with a progress bar, written to ``table`` as they end; the content of ``--json``.
+@dataclass(frozen=True)
+class Where:
+    """Where variants run, and what of them stays."""
+
+    jobs: int = 1  #: processes of this machine
+    scheduler: str = "local"  #: or a dask scheduler, see `Cluster`
+    output: Path | None = None  #: .csv or .parquet
+    resume: bool = False  #: go on with a .parquet that is there
+    recordings: Path | None = None  #: folder
+    keep: frozenset[int] | None = None  #: numbers of variants that are recorded; None: all
+
+    @property
+    def runner(self) -> Runner:
+        """Processes, or a cluster."""
+        return Processes(self.jobs) if self.scheduler == "local" else Cluster(self.scheduler)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a sweep will do: the base, its variants, and what it is told of them."""
+
+    base: Scenario
+    study: Study
+    design: Design
+    axes: tuple[Axis | Range, ...]
+    variants: tuple[Variant, ...]
+    reference: Reference | None
+
+    @property
+    def keys(self) -> list[str]:
+        """What varies."""
+        return [*(axis.key for axis in self.axes), *([SEED] if self.design.seeds else [])]
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """Of which a table is: rows of another base or program are not mixed in."""
+        text = "\n".join((self.base.resolved_toml(), self.study.reference or ""))
+        return {
+            "scenario": self.base.title,
+            "base": hashlib.sha256(text.encode()).hexdigest()[:16],
+            "program": program(),
+            "design": self.design.name,
+        }
+
+
+def plan(scenario: str, vary: Sequence[str], overrides: Sequence[str], design: Design, where: Where) -> Plan:
+    """Everything is read and checked once, before anything runs."""
+    axes = tuple(parse_axis(text) for text in vary)
+    design.check(axes)
+    written = read_scenario(scenario)
+    base = checked(written, overrides)
+    file = written.file.parent / "reference.toml"
+    text = read_toml(file, InputError)[0] if file.is_file() else None
+    reference = None if text is None else parse_reference(text, str(file))
+    variants = tuple(design.variants(axes, base.seed))
+    if where.keep and max(where.keep) >= len(variants):
+        raise InputError(f"--keep {max(where.keep)}: there are {len(variants)} variants, numbered from 0")
+    study = Study(written, tuple(overrides), text, where.recordings, where.keep)
+    return Plan(base, study, design, axes, variants, reference)
+
+
+def is_random(scenario: Scenario) -> bool:
+    """Whether something in a scenario is drawn by its seed."""
+    rubble, fields = scenario.rubble, (getattr(scenario.ice, name) for name in FIELDS)
+    return (rubble.enabled and rubble.initial_volume > 0.0) or any(bool(f and f.variation) for f in fields)
+
+
+def run_sweep(the: Plan, where: Where, table: Table, talk: Talk) -> dict[str, Any]:
+    """All variants with a progress bar, written as they end; the content of ``--json``.
 
     If it is stopped, what has ended until then is shown.
     """
-    axes = [parse_axis(text) for text in vary]
-    file = locate(scenario).resolve()  # once: every process reads the same file
-    base = load_scenario(file, overrides)
-    for text in base.warnings:
+    for text in the.base.warnings:
         talk.warn(text)
-    for line in fact_lines(judged(base)["facts"]):
+    if the.design.seeds and not is_random(the.base):
+        talk.warn(
+            "a seed changes nothing here: give rubble.initial_volume, or ice that varies (ice.strength_field.variation)"
+        )
+    for line in fact_lines(judged(the.base)["facts"]):
         talk.detail(line)
-    keys = [axis.key for axis in axes]
-    content = {"scenario": base.title, "overrides": list(overrides), "keys": keys, "grid": grid}
-    chosen = variants(axes, grid)
-    rows: list[Row] = []
+    known: dict[int, Row] = {}
+    if where.resume and where.output is not None:
+        known = known_rows(where.output, the.variants, the.about)
+        talk.note(f"{len(known)} of {len(the.variants)} variants are known from {where.output}")
+    if where.recordings is not None:
+        where.recordings.mkdir(parents=True, exist_ok=True)
+    ended = dict(known)
     try:
         with _progress(talk) as progress:
-            task = progress.add_task(as_line(base.title)[:30], total=len(chosen))
+            bar = progress.add_task(as_line(the.base.title)[:30], total=len(the.variants), completed=len(known))
+            table.begin(known)
 
-            def done(row: Row, ended: list[Row]) -> None:
-                progress.advance(task)
+            def done(row: Row) -> None:
+                ended[row["number"]] = row
+                table.add(row)
+                progress.advance(bar)
                 talk.note(f"{row['variant']}: {row['error'] or _in_a_line(row)}")
-                rows[:] = ended
-                table.write(keys, ended)
 
-            sweep(str(file), overrides, chosen, workers, done)
+            rows = sweep(the.study, the.variants, where.runner, done, known)
     except StoppedError:
-        if rows:
-            show({**content, "variants": rows})
+        if ended:
+            show(_content(the, with_ratios([ended[k] for k in sorted(ended)])))
         raise
-    return {**content, "failed": sum(row["error"] is not None for row in rows), "variants": rows}
+    return _content(the, rows)
+
+
+def _content(the: Plan, rows: list[Row]) -> dict[str, Any]:
+    """What ``--json`` prints."""
+    sampled = the.design.name in SAMPLED
+    ranges = [axis for axis in the.axes if isinstance(axis, Range)]
+    return {
+        "scenario": the.base.title,
+        "overrides": list(the.study.overrides),
+        "keys": the.keys,
+        "design": the.design.name,
+        "failed": sum(row["error"] is not None for row in rows),
+        "variants": rows,
+        "ensembles": ensembles(rows, the.reference) if the.design.seeds or sampled else [],
+        "indices": indices(the.design, ranges, the.variants, rows) if sampled else [],
+    }
+
+
+def table_of(the: Plan, where: Where) -> Table:
+    """What the rows are written to."""
+    if where.output is None:
+        return NoTable()
+    if where.output.suffix != ".parquet":
+        return CsvTable(where.output, the.keys)
+    features = () if the.reference is None else the.reference.features
+    return ParquetTable(where.output, the.variants, the.keys, [f.name for f in features], the.about)
 
 
 def _progress(talk: Talk) -> Progress:
@@ -82,35 +177,6 @@ def _progress(talk: Talk) -> Progress:
     return Progress(*columns, console=stderr, transient=True, disable=talk.level == QUIET)
 
 
-def show(content: dict[str, Any]) -> None:
-    """The table for people."""
-    ran = [row for row in content["variants"] if row["error"] is None]
-    scale = scale_of((row[name] for row in ran for name in ("fx_peak", "fz_peak")), "N")
-    over = " or ".join(dict.fromkeys(over_text(row["averaging_s"]) for row in ran))
-    title = f"{content['scenario']}: peaks of means over {over} [{scale.unit}], ratio to the base, largest Fx of phases"
-    table = new_table(*COLUMNS, title=title)
-    table.columns[0].min_width = 28
-    for row in content["variants"]:
-        if row["error"] is not None:
-            table.add_row(row["variant"], "failed", *[""] * (len(COLUMNS) - 1))
-            continue
-        phases = [scale.text(row[f"{p}_fx_peak"]) for p in ("breaking", "rotating", "sliding")]
-        load = [
-            (scale.text(row[f"{c}_peak"]), f"{row[f'{c}_time']:.2f}", _ratio(row[f"{c}_ratio"])) for c in ("fx", "fz")
-        ]
-        table.add_row(row["variant"], *load[0], *load[1], *phases, scale.text(row["fx_mean"]), f"{row['wall_s']:.1f}")
-    stdout.print(table)
-    for row in content["variants"]:
-        if row["error"] is not None:
-            print_line(f"failed: {row['variant']}: {row['error']}")
-        elif row["not_trustworthy"]:
-            print_line(f"not trustworthy: {row['variant']}: because {row['not_trustworthy']}")
-
-
 def _in_a_line(row: Row) -> str:
     scale = scale_of((row["fx_peak"], row["fz_peak"]), "N")
     return f"Fx {scale.labelled(row['fx_peak'])}, Fz {scale.labelled(row['fz_peak'])}"
-
-
-def _ratio(value: float | None) -> str:
-    return "-" if value is None else f"{value:.3f}"

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -123,6 +124,7 @@ class BeamTest:
         )
 
 
+@lru_cache(maxsize=32)  # of the runs of a sweep in one process only the first simulates its beam
 def layer_strength(ice: Ice, mu: float, fracture_energy: float, beam: Beam, d: float) -> float:
     """Strength of the layers with which the simulated beam breaks at its load [Pa]; cells of about ``d`` [m]."""
     wanted, sigma, cut = beam.stress(ice.h), beam.stress(ice.h) / 1.3, cut_beam(beam, d)

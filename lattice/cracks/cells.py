@@ -20,6 +20,7 @@ from numpy.polynomial.legendre import Legendre
 
 from lattice.compiled import compiled
 from lattice.cracks.kinematics import Edges, Strain
+from lattice.cracks.law import Local
 from lattice.grid import Array, IntArray
 
 
@@ -47,12 +48,20 @@ CRACKING, CRUSHING, RUBBING, SWITCHING, TURNING = range(5)  #: entries of ``Crac
 
 
 class Plate(NamedTuple):
-    """What all layered cells of a sheet have in common."""
+    """What layered cells of a sheet have in common."""
 
     d: float  #: cell size [m]
     h: float  #: thickness [m]
     shear: float  #: of an edge spring of one cell, K_out / 2 [N/m]
     hourglass: float  #: stiffness of the modes without mean strain in the plane [N/m]
+
+
+@compiled(inline="always")
+def plate_at(b: int, plate: Plate, local: Local) -> Plate:
+    """The plate of the cell at b."""
+    t = local.thickness[b]
+    share = local.E[b] * t
+    return Plate(plate.d, plate.h * t, plate.shear * share, plate.hourglass * share)
 
 
 class Cracks(NamedTuple):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
-from lattice.cracks.law import CrackLaw
+from lattice.cracks.law import CrackLaw, local_of
 from lattice.cracks.lean import book_pull, gather_lean, lean_energy, lean_on
 from lattice.cracks.march import Stretch, march_cracked
 from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give, hourglass_energy, pull_on_held
@@ -24,6 +24,7 @@ from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
 from lattice.strain import CellState
+from lattice.varied import PLANE, Varied
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
 #: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
@@ -40,10 +41,22 @@ class CrackingEngine(ExplicitEngine):
     _written = (*ExplicitEngine._written, "layered")
     slopes = True  #: strain the middle plane; False: rotations are small
 
-    def __init__(self, grid: Grid, ice: Ice, springs: Springs, window: float, *, law: CrackLaw, **options: Any):
-        """As `ExplicitEngine`, with the ``law`` of the cracks."""
+    def __init__(
+        self,
+        grid: Grid,
+        ice: Ice,
+        springs: Springs,
+        window: float,
+        *,
+        law: CrackLaw,
+        rigid: float | None = None,
+        **options: Any,
+    ):
+        """As `ExplicitEngine`, with the ``law`` of the cracks; ``rigid`` as in `local_of`, for ice that varies."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
-        self.layered = LayeredCells(law, plate, layout.motion(grid).y[0].size)
+        varied = options.get("varied") or Varied.uniform(grid.cells)
+        E, s, t = (layout.at_places(grid, values) for values in (varied.E, varied.strength, varied.thickness))
+        self.layered = LayeredCells(law, plate, local_of(law, E, s, t, rigid))
         self.layered.leans = self.slopes
         self.slow = options.get("sub_steps", TRUE_INERTIA).scaling > 1.0
         super().__init__(grid, ice, springs, window, **options)
@@ -103,11 +116,18 @@ class CrackingEngine(ExplicitEngine):
         layered.cells.losses[SWITCHING] += stored  # what the springs of the cell had is booked by who takes them away
         return stored + float(hourglass_energy(k, nodes, layered))
 
+    def begin_cracked(self, cell: int, angle: float) -> None:
+        """A cell at rest is cracked through across this direction, and the crack is closed."""
+        k = self.layered.add(cell, self._corner(cell), angle)
+        self.layered.crack_through(k)
+        evaluate_at(k, self._nodes(), self.layered.view())
+
     def crack(self, live: BoolArray) -> None:
         """Cells of ``live`` (cells,) at or past the strength of the layers become layered, and leave the mask."""
         g, (u, q) = self.grid, self.displacement()
-        stress, angle = face_stresses(CellState.of(g, u, q, lean=self.lean_strain()), self.ice)
-        for cell in np.flatnonzero(live & (stress >= self.ice.sigma_t)):
+        state = CellState.of(g, u, q, lean=self.lean_strain(), thick=self.varied.thickness)
+        stress, angle = face_stresses(state, self.ice)
+        for cell in np.flatnonzero(live & (self.varied.weakness * stress >= self.ice.sigma_t)):
             self.begin(int(cell), float(angle[cell]))
             live[cell] = False
         self.set_cells(live, np.full(g.cells, self.ice.sigma_t), np.ones(g.nodes, bool))
@@ -146,7 +166,8 @@ class CrackingEngine(ExplicitEngine):
         """As `Engine.lean_energy`."""
         x, g = np.zeros_like(self.motion.y[:2]), self.grid
         x[:, : g.nx, : g.ny] = u.T.reshape(2, g.nx, g.ny)
-        return float(lean_energy(x.shape[2], x.reshape(2, -1), self._at_cells(live), self.layered.view()))
+        on = self._at_cells(np.where(live, self.varied.springs[:, PLANE], 0.0))
+        return float(lean_energy(x.shape[2], x.reshape(2, -1), on, self.layered.view()))
 
     def lean_strain(self) -> Array:
         """Membrane strain of all cells from their slopes: xx, yy, shear in engineering measure, (3, cells)."""

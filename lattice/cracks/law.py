@@ -23,6 +23,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from lattice.compiled import compiled
 from lattice.grid import Array
 from lattice.ice import Ice
@@ -31,7 +33,7 @@ N, T = range(2)  #: axes of a crack, across it and along it: last index of damag
 
 
 class CrackLaw(NamedTuple):
-    """Constants of the law, all layers and cells alike."""
+    """Constants of the law, all layers alike."""
 
     E: float  #: Young's modulus [Pa]
     nu: float  #: Poisson's ratio [-]
@@ -42,6 +44,34 @@ class CrackLaw(NamedTuple):
     e_f: float  #: strain at which its crack carries no tension any more, w_c / d, at least e_0: brittle [-]
 
 
+class Local(NamedTuple):
+    """The ice of each cell beside that of the law, (places,) each: at the place of its node 0, as in `Cracks`."""
+
+    E: Array  #: over that of the law
+    strength: Array  #: of every kind, over that of the law
+    thickness: Array  #: over that of the plate
+    e_0: Array  #: as in `CrackLaw`
+    e_f: Array  #: as in `CrackLaw`
+
+
+def local_of(law: CrackLaw, E: Array, strength: Array, thickness: Array, rigid: float | None = None) -> Local:
+    """G_f is the same everywhere, so that weaker ice softens over a wider opening.
+
+    ``rigid`` is the `softening` of the law; without it a law that is brittle is so in every cell.
+    """
+    if rigid is None:
+        rigid = law.e_f if law.e_f > law.e_0 else 0.0
+    e_0 = law.e_0 * (strength / E)
+    return Local(E, strength, thickness, e_0, np.maximum(e_0, rigid / strength))
+
+
+@compiled(inline="always")
+def law_at(b: int, law: CrackLaw, local: Local) -> CrackLaw:
+    """The law of the cell at b."""
+    E, s = local.E[b], local.strength[b]
+    return CrackLaw(law.E * E, law.nu, law.sigma_c * s, law.cohesion * s, law.mu, local.e_0[b], local.e_f[b])
+
+
 #: shear strength of whole ice where none is given, as share of the compressive one: 700 kPa of 4 MPa (van Vliet 2018,
 #: chapter 5 and Table 6-1) [-]
 COHESION = 0.175
@@ -50,9 +80,14 @@ COHESION = 0.175
 def law_of(ice: Ice, fracture_energy: float, mu: float, d: float) -> CrackLaw:
     """The law for layers of strength ``ice.sigma_t`` in cells of size d [m]; ``fracture_energy`` [J/m2], 0: brittle."""
     e_0 = ice.sigma_t / ice.E
-    e_f = max(e_0, 2.0 * fracture_energy / (ice.sigma_t * d))
+    e_f = max(e_0, softening(ice, fracture_energy, d))
     cohesion = ice.sigma_shear if math.isfinite(ice.sigma_shear) else COHESION * ice.sigma_c
     return CrackLaw(ice.E, ice.nu, ice.sigma_c, cohesion, mu, e_0, e_f)
+
+
+def softening(ice: Ice, fracture_energy: float, d: float) -> float:
+    """Strain w_c / d of cells of size d [m] at which a crack carries nothing any more, were the cell itself rigid."""
+    return 2.0 * fracture_energy / (ice.sigma_t * d)
 
 
 class Layer(NamedTuple):

@@ -27,7 +27,7 @@ Membrane = tuple[float, float, float]  #: along x and y, and shear in engineerin
 
 @compiled(inline="always")
 def membrane_force(e: Membrane, layered: Layered) -> Membrane:
-    """N per width of an elastic cell with this membrane strain, plane stress [N/m]."""
+    """N per width of an elastic cell of mean ice with this membrane strain, plane stress [N/m]."""
     E, nu, h = layered.law.E, layered.law.nu, layered.plate.h
     S = E * h / (1.0 - nu * nu)
     return S * (e[0] + nu * e[1]), S * (e[1] + nu * e[0]), 0.5 * E * h / (1.0 + nu) * e[2]
@@ -56,7 +56,7 @@ def slopes(b: int, q: float, nodes: Nodes) -> tuple[float, float]:
 
 @compiled(nogil=True)
 def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> None:
-    """New slopes of elastic cells; ``intact`` (places,) as `Mesh.intact`.
+    """New slopes of elastic cells; ``intact`` (places,) as `Intact.plane`.
 
     The energy that they gain is that of the strain half a sub-step ago, where leapfrog has a potential that is linear
     in the displacements.
@@ -76,7 +76,7 @@ def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> None:
         flat = membrane_force((y.n - nodes.alpha * v.n, y.t - nodes.alpha * v.t, y.g - nodes.alpha * v.g), layered)
         m_x, m_y, m_s = 0.5 * (g_x + o_x), 0.5 * (g_y + o_y), 0.5 * (g_s + o_s)
         mean = membrane_force((y.n - ago * v.n + m_x, y.t - ago * v.t + m_y, y.g - ago * v.g + m_s), layered)
-        lean.gained[b] = (g_x - o_x) * mean[0] + (g_y - o_y) * mean[1] + (g_s - o_s) * mean[2]
+        lean.gained[b] = on * ((g_x - o_x) * mean[0] + (g_y - o_y) * mean[1] + (g_s - o_s) * mean[2])
         lean.strain[0, b], lean.strain[1, b], lean.strain[2, b] = g_x, g_y, g_s
         lean.stress[0, b], lean.stress[1, b], lean.stress[2, b] = on * T[0], on * T[1], on * T[2]
         N_x, N_y, N_s = on * (flat[0] + T[0]), on * (flat[1] + T[1]), on * (flat[2] + T[2])
@@ -180,7 +180,7 @@ def overloaded_leaning(motion: Motion, threshold: Array, screen: Screen, alpha: 
 def lean_energy(my: int, u: Array, live: Array, layered: Layered) -> float:
     """Energy by which slopes add to the springs of elastic cells at displacements u (2, places) [J].
 
-    ``live`` (places,) is not 0 at the cells that are counted.
+    ``live`` (places,) is as `Intact.plane` at the cells that are counted, else 0.
     """
     q, g, total = 0.5 / layered.plate.d, layered.lean.strain, 0.0
     for b in range(live.shape[0]):
@@ -188,6 +188,7 @@ def lean_energy(my: int, u: Array, live: Array, layered: Layered) -> float:
             xx, xy, _ = gradients(b, my, q, u[0])
             yx, yy, _ = gradients(b, my, q, u[1])
             N = membrane_force((g[0, b], g[1, b], g[2, b]), layered)
-            total += N[0] * (xx + 0.5 * g[0, b]) + N[1] * (yy + 0.5 * g[1, b]) + N[2] * (xy + yx + 0.5 * g[2, b])
+            own = N[0] * (xx + 0.5 * g[0, b]) + N[1] * (yy + 0.5 * g[1, b]) + N[2] * (xy + yx + 0.5 * g[2, b])
+            total += live[b] * own
     energy: float = layered.plate.d**2 * total
     return energy

@@ -7,7 +7,7 @@ from typing import Any
 
 from lattice.cracks.beam import Beam, layer_strength, standard_beam
 from lattice.cracks.engine import SLOW, CrackingEngine
-from lattice.cracks.law import law_of
+from lattice.cracks.law import law_of, softening
 from lattice.cracks.sheet import PRINCIPAL, CrackingSheet
 from lattice.criteria.table import Criterion
 from lattice.explicit.engine import TRUE_INERTIA
@@ -52,5 +52,6 @@ def cracking_sheet(
     layers = replace(ice, sigma_t=strength, sigma_f=strength, beam_test=None)
     law = law_of(layers, measured.fracture_energy, measured.friction, grid.d)
     sub_steps = TRUE_INERTIA if dynamic else SLOW
-    engine = CrackingEngine(grid, layers, springs, window, law=law, **{"sub_steps": sub_steps, **options})
+    options = {"sub_steps": sub_steps, **options, "rigid": softening(layers, measured.fracture_energy, grid.d)}
+    engine = CrackingEngine(grid, layers, springs, window, law=law, **options)
     return CrackingSheet(engine, criteria=criteria, contact_time=CONTACT_TIME if dynamic else SLOW_CONTACT)

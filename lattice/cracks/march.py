@@ -56,7 +56,7 @@ def march_cracked(
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
         if layered.leans:
-            look_at_slopes(nodes, mesh.intact.reshape(-1), layered)
+            look_at_slopes(nodes, mesh.intact.plane.reshape(-1), layered)
         renew(nodes, layered)
         if step % stretch.stride == 0:
             damped(motion, mesh, layered)

@@ -20,12 +20,13 @@ from lattice.cracks.cells import (
     Plate,
     edge_energy,
     edge_forces,
+    plate_at,
     resultants,
     tangent_energy,
 )
 from lattice.cracks.evaluate import evaluate
 from lattice.cracks.kinematics import elongations, leaned, strain_of, turned, turned_back
-from lattice.cracks.law import CrackLaw
+from lattice.cracks.law import CrackLaw, Local, law_at
 from lattice.cracks.slopes import Lean
 from lattice.explicit.layout import PHI_X, PHI_Y, U_X, U_Y, Motion, PerNode, W
 from lattice.grid import Array
@@ -40,6 +41,7 @@ class Layered(NamedTuple):
     law: CrackLaw
     lean: Lean
     leans: bool  #: slopes strain the middle plane; else rotations are small
+    local: Local  #: how the ice of each cell differs from ``plate`` and ``law``
 
 
 class Nodes(NamedTuple):
@@ -57,11 +59,11 @@ class Nodes(NamedTuple):
 @compiled(inline="always")
 def moved(k: int, my: int, y: Array, layered: Layered) -> bool:
     """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
-    plate, s = layered.plate, layered.cells.seen
+    b, s = layered.cells.corner[k], layered.cells.seen
+    plate = plate_at(b, layered.plate, layered.local)
     half = 0.5 * plate.h
     wide = max(abs(s[E_X, k]) + half * abs(s[K_X, k]), abs(s[E_Y, k]) + half * abs(s[K_Y, k]))
-    far: float = MOVED * (layered.law.e_0 + WIDE * wide)
-    b = layered.cells.corner[k]
+    far: float = MOVED * (layered.local.e_0[b] + WIDE * wide)
     in_sheet, _ = strain_of(b, my, 0.5 / plate.d, y)
     e = leaned(in_sheet, b, layered.lean.strain, 1.0)
     a: float = abs(e.n - s[E_X, k]) + half * abs(e.kn - s[K_X, k])
@@ -94,8 +96,9 @@ def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
     e = leaned(in_sheet, b, layered.lean.strain, 1.0)
     s[E_X, k], s[E_Y, k], s[G_XY, k] = e.n, e.t, e.g
     s[K_X, k], s[K_Y, k], s[K_XY, k] = e.kn, e.kt, e.kg
-    lean = layered.lean.strain
-    stored: float = evaluate(k, nodes.x, nodes.way, my, layered.plate, layered.law, cracks, lean)
+    lean, local = layered.lean.strain, layered.local
+    plate, law = plate_at(b, layered.plate, local), law_at(b, layered.law, local)
+    stored: float = evaluate(k, nodes.x, nodes.way, my, plate, law, cracks, lean)
     return stored
 
 
@@ -105,11 +108,12 @@ def crack_forces(my: int, y: Array, whole: float, layered: Layered) -> None:
 
     ``whole`` is 1; 0 leaves out what the cells carry without strain, so that y = alpha v gives their damping.
     """
-    plate, cracks, lean = layered.plate, layered.cells, layered.lean.strain
-    q, half, f, F = 0.5 / plate.d, 0.5 * plate.d, 0.5 * plate.d, cracks.force
-    H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
+    d, cracks, lean = layered.plate.d, layered.cells, layered.lean.strain
+    q, half, f, F = 0.5 / d, 0.5 * d, 0.5 * d, cracks.force
     for k in range(layered.used):
         b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
+        plate = plate_at(b, layered.plate, layered.local)
+        H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
         e, h = strain_of(b, my, q, y)
         Nn, Nt, Ng, Mn, Mt, Mg = resultants(k, turned(leaned(e, b, lean, whole), c, s), whole, cracks)
         N1, N2, N3 = turned_back(Nn, Nt, Ng, c, s)
@@ -159,7 +163,8 @@ def pull_on_held(my: int, held: Array, layered: Layered) -> float:
 @compiled(nogil=True)
 def hourglass_energy(k: int, nodes: Nodes, layered: Layered) -> float:
     """Of the hourglass modes of cell k, x(n) . K x(n-1) / 2, as leapfrog has it [J]."""
-    plate, b, q = layered.plate, layered.cells.corner[k], 0.5 / layered.plate.d
+    b, q = layered.cells.corner[k], 0.5 / layered.plate.d
+    plate = plate_at(b, layered.plate, layered.local)
     H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
     _, y = strain_of(b, nodes.my, q, nodes.y)
     _, v = strain_of(b, nodes.my, q, nodes.v)
@@ -173,11 +178,12 @@ def hourglass_energy(k: int, nodes: Nodes, layered: Layered) -> float:
 @compiled(nogil=True)
 def energies(my: int, x: Array, layered: Layered) -> Array:
     """Energy of each layered cell at displacements x (5, nodes), hourglass modes included."""
-    plate, cracks, lean = layered.plate, layered.cells, layered.lean.strain
-    out, q, half = np.empty(layered.used), 0.5 / plate.d, 0.5 * plate.d
-    H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
+    d, cracks, lean = layered.plate.d, layered.cells, layered.lean.strain
+    out, q, half = np.empty(layered.used), 0.5 / d, 0.5 * d
     for k in range(layered.used):
         b = cracks.corner[k]
+        plate = plate_at(b, layered.plate, layered.local)
+        H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
         e, h = strain_of(b, my, q, x)
         E = tangent_energy(k, turned(leaned(e, b, lean, 1.0), cracks.axis[0, k], cracks.axis[1, k]), cracks)
         E += 0.5 * (H * (h.x * h.x + h.y * h.y) + R * (h.tx * h.tx + h.ty * h.ty))

@@ -78,8 +78,9 @@ class CrackingSheet(ExplicitSheet):
         self.failure_times += (now - (1.0 - part) * e.dt).tolist()
         out.causes += self.judge.causes(ended.u, ended.q, self._eased(), cells)
         out.failed += cells.tolist()
-        lean = e.lean_strain()[:, cells]
-        _, angles = face_stresses(CellState.of(self.grid, ended.u, ended.q, cells, lean=lean), self.ice)
+        lean, thick = e.lean_strain()[:, cells], e.varied.thickness[cells]
+        state = CellState.of(self.grid, ended.u, ended.q, cells, lean=lean, thick=thick)
+        _, angles = face_stresses(state, self.ice)
         self.energy.fracture -= self._swing(cells)
         for cell, angle in zip(cells.tolist(), angles.tolist(), strict=True):
             self.energy.book_failure(cell, half)
@@ -92,6 +93,11 @@ class CrackingSheet(ExplicitSheet):
 
     def _ease(self) -> None:
         self._set_cells()
+
+    def _begin_cracked(self, cells: IntArray, angle: Array) -> None:
+        for cell, normal in zip(cells.tolist(), angle.tolist(), strict=True):
+            self.engine.begin_cracked(cell, normal)
+        self.intact[cells] = False
 
     # ---- what holds together ----------------------------------------------------------------------------------
 
@@ -135,7 +141,7 @@ class CrackingSheet(ExplicitSheet):
         if not layered.count:
             return np.zeros(0, bool)
         through, opening, slip = layered.parting(self.grid.d)
-        h = self.ice.h
+        h = self.ice.h * self.engine.varied.thickness[layered.cell][:, None]
         loose = through & (layered.thrust <= 0.0) & (np.maximum(opening, slip) > 0.5 * h)
         return np.asarray((loose | (slip > h)).any(axis=1))
 

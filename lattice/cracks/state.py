@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lattice.cracks.cells import E_X, E_Y, G_XY, LOSSES, WEIGHTS, Cracks, Plate, room_for
-from lattice.cracks.law import CrackLaw, N
+from lattice.cracks.law import CrackLaw, Local, N
 from lattice.cracks.motion import Layered
 from lattice.cracks.slopes import Lean, level
 from lattice.grid import Array, BoolArray, IntArray
@@ -18,10 +18,10 @@ from lattice.grid import Array, BoolArray, IntArray
 class LayeredCells:
     """Layered cells in the order in which they began."""
 
-    def __init__(self, law: CrackLaw, plate: Plate, places: int, room: int = 64):
-        """``places`` of a padded row-by-row array of all nodes."""
-        self.law, self.plate, self.count, self._cracks = law, plate, 0, room_for(room)
-        self.lean, self.leans = level(places), True
+    def __init__(self, law: CrackLaw, plate: Plate, local: Local, room: int = 64):
+        """``local`` has a place for each of a padded row-by-row array of all nodes."""
+        self.law, self.plate, self.local, self.count, self._cracks = law, plate, local, 0, room_for(room)
+        self.lean, self.leans = level(local.E.size), True
 
     def __copy__(self) -> LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
@@ -33,7 +33,7 @@ class LayeredCells:
 
     def view(self) -> Layered:
         """What the compiled loops take; changes of the arrays are seen here."""
-        return Layered(self.count, self._cracks, self.plate, self.law, self.lean, self.leans)
+        return Layered(self.count, self._cracks, self.plate, self.law, self.lean, self.leans, self.local)
 
     def add(self, cell: int, corner: int, angle: float) -> int:
         """A cell begins to crack across the direction ``angle`` [rad]; returns its place. ``corner`` as in `Cracks`."""
@@ -86,6 +86,16 @@ class LayeredCells:
     def depth(self) -> Array:
         """Share of the thickness that is cracked through, across n, (count,)."""
         return np.asarray((self._cracks.damage[: self.count, :, N] >= 1.0) @ np.array(WEIGHTS))
+
+    @property
+    def angle(self) -> Array:
+        """Of the direction n of each from the x axis, (count,) [rad]."""
+        cos, sin = self._cracks.axis[:, : self.count]
+        return np.asarray(np.arctan2(sin, cos))
+
+    def crack_through(self, k: int) -> None:
+        """Cell k has lost all its tensile strength across n."""
+        self._cracks.damage[k, :, N] = 1.0
 
     @property
     def thrust(self) -> Array:

@@ -11,6 +11,7 @@ from lattice.criteria.table import Criterion, needed
 from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.strain import CellState
+from lattice.varied import Varied
 
 
 @dataclass(frozen=True)
@@ -26,9 +27,10 @@ class Standing:
 class Judge:
     """Asks every chosen criterion; the largest utilisation counts."""
 
-    def __init__(self, grid: Grid, ice: Ice, criteria: tuple[Criterion, ...]):
+    def __init__(self, grid: Grid, ice: Ice, criteria: tuple[Criterion, ...], varied: Varied | None = None):
         """ValueError where a criterion needs a strength that the ice does not have."""
         self.grid, self.ice, self.criteria = grid, ice, criteria
+        self.varied = Varied.uniform(grid.cells) if varied is None else varied
         for name in needed(criteria):
             if np.isinf(getattr(ice, name)):
                 users = ", ".join(c.name for c in criteria if name in c.needs)
@@ -43,10 +45,12 @@ class Judge:
 
     def utilisation(self, u: Array, q: Array, standing: Standing) -> Array:
         """Of all cells, (cells,); 0 for those that are not live. FloatingPointError if one is not a number."""
-        worst = self._each(CellState.of(self.grid, u, q, None, standing.limit, standing.lean), standing.beside)
+        state = CellState.of(self.grid, u, q, None, standing.limit, standing.lean, self.varied.thickness)
+        worst = self._each(state, standing.beside)
         utilisation = worst[0]
         for other in worst[1:]:
             utilisation = np.maximum(utilisation, other)
+        utilisation = self.varied.weakness * utilisation
         if not np.isfinite(utilisation).all():
             raise FloatingPointError("the sheet's motion is not finite: use a shorter window (coupling.window)")
         return np.where(standing.live, utilisation, 0.0)
@@ -56,18 +60,18 @@ class Judge:
         if len(self.criteria) == 1:
             return [self.criteria[0].name] * len(cells)
         lean = None if standing.lean is None else standing.lean[:, cells]
-        state = CellState.of(self.grid, u, q, cells, standing.limit[cells], lean)
+        state = CellState.of(self.grid, u, q, cells, standing.limit[cells], lean, self.varied.thickness[cells])
         worst = np.argmax(self._each(state, standing.beside[cells]), axis=0)
         return [self.criteria[k].name for k in worst]
 
     def tensile_stress(self, u: Array, q: Array) -> Array:
-        """What is compared with `Standing.limit`: 0 without such a criterion, (cells,) [Pa]."""
+        """What is compared with `Standing.limit`, that of mean ice: 0 without such a criterion, (cells,) [Pa]."""
         stress, one = np.zeros(self.grid.cells), np.ones(self.grid.cells)
-        state = CellState.of(self.grid, u, q, limit=one)
+        state = CellState.of(self.grid, u, q, limit=one, thick=self.varied.thickness)
         for criterion in self.criteria:
             if criterion.limited:
                 stress = np.maximum(stress, criterion.judge(state, self.ice))
-        return stress
+        return np.asarray(self.varied.weakness * stress)
 
     def _each(self, state: CellState, beside: BoolArray) -> list[Array]:
         found = []

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -72,14 +72,13 @@ class ExplicitEngine(Engine):
         springs: Springs,
         window: float,
         *,
-        held_in_plane: BoolArray,
-        damping: float = 0.0,
-        alpha: float = 0.0,
         sub_steps: SubSteps = TRUE_INERTIA,
+        **options: Any,
     ):
         """As `Engine`; ``window`` [s] is cut into equal sub-steps. ValueError if they are not stable."""
         step, scaling = sub_steps
-        super().__init__(grid, ice, springs, held_in_plane=held_in_plane, damping=damping, alpha=alpha)
+        super().__init__(grid, ice, springs, **options)
+        self._thick = layout.at_cells(grid, self.varied.thickness, 1.0)
         self.inertia_u = scaling * self.M_u
         self.inertia_q = (self.M_q.reshape(-1, 3) * (1.0, scaling, scaling)).ravel()
         self.critical = self._critical_step()
@@ -89,7 +88,7 @@ class ExplicitEngine(Engine):
                 f"sub-step {step:.3g} s of the explicit engine is not stable: use at most "
                 f"{self.critical:.3g} s (largest frequency of the lattice, damping included)"
             )
-        self.damping = damping
+        self.damping = options.get("damping", 0.0)
         self._judge: Judge = combined_tension
         self.parts = 1  #: equal parts of a window that are whole numbers of sub-steps
         self._jump = np.zeros((grid.nodes, 5))  #: change of the velocities in the sub-step after the last state
@@ -105,10 +104,11 @@ class ExplicitEngine(Engine):
 
     def watch(self, judge: Judge) -> None:
         """From now on `march` stops where this law of `screen.SCREENED` says so."""
-        self._judge, self.screen = judge, screen_of(self.ice, judge)
+        self._judge, self.screen = judge, screen_of(self.ice, self._thick, judge)
 
     def _critical_step(self) -> float:
-        K_u, K_q = assemble(self.grid, self.rows_u).tocsr(), assemble(self.grid, self.rows_q).tocsr()
+        share = self.varied.springs
+        K_u, K_q = (assemble(self.grid, rows, share=share).tocsr() for rows in (self.rows_u, self.rows_q))
         floating, damped = K_q + sp.diags(self.k_f), self.alpha * K_q + sp.diags(self.C_q)
         return min(
             critical_step(K_u, self.alpha * K_u, self.inertia_u), critical_step(floating, damped, self.inertia_q)
@@ -123,7 +123,7 @@ class ExplicitEngine(Engine):
         pace = layout.pace(ice, dt, self.alpha, self.damping)
         self.mesh, self.screen = (
             layout.mesh(g, self.held[:, 0], kick, self._springs, pace, dt),
-            screen_of(ice, self._judge),
+            screen_of(ice, self._thick, self._judge),
         )
         self.motion = layout.motion(g)
         self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
@@ -131,12 +131,14 @@ class ExplicitEngine(Engine):
     def set_cells(self, live: BoolArray, limits: Array, present: BoolArray) -> None:
         """Cells that carry force, their tensile limits (cells,) [Pa], and the nodes that are still in the lattice.
 
-        `march` stops at a limit; an infinite one stops it never.
+        `march` stops at a limit; an infinite one stops it never. Limits are those of the mean ice.
         """
         g = self.grid
         shape = (g.nx - 1, g.ny - 1)
-        self.mesh.intact[1 : g.nx, 1 : g.ny] = live.reshape(shape)
-        threshold = np.where(live, thresholds(limits, self.ice, g.d, self._judge), np.inf)
+        for share, values in zip(self.mesh.intact, self.varied.springs.T, strict=True):
+            share[1 : g.nx, 1 : g.ny] = np.where(live, values, 0.0).reshape(shape)
+        threshold = thresholds(limits, self.ice, g.d, self._judge) / self.varied.weakness
+        threshold = np.where(live, threshold, np.inf)
         self.mesh.threshold[: g.nx - 1, : g.ny - 1] = threshold.reshape(shape)
         gone = ~present.reshape(g.nx, g.ny)
         for array in self.motion:

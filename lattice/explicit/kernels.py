@@ -25,6 +25,7 @@ from lattice.explicit.layout import (
     U_X,
     U_Y,
     HalfSprings,
+    Intact,
     Motion,
     Pace,
     PerNode,
@@ -37,13 +38,14 @@ CARRIED = 14 * LINE  #: where the sums begin in ``rows`` that a row leaves for t
 
 
 @compiled(nogil=True)
-def connections(i: int, ny: int, y: Array, intact: Array, springs: HalfSprings, rows: Array) -> None:
+def connections(i: int, ny: int, y: Array, intact: Intact, springs: HalfSprings, rows: Array) -> None:
     """Forces of the connections from row i along x, along y and along both diagonals, (2.2)-(2.5) and chapter 3."""
     kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
-    kd, gd, half = springs.K_n_dia, springs.G_dia, springs.lever
+    kd, gd, half, plane, bend = springs.K_n_dia, springs.G_dia, springs.lever, intact.plane, intact.bend
     for j in range(ny):
-        cell = intact[i + 1, j + 1]
-        x, z = cell + intact[i + 1, j], cell + intact[i, j + 1]
+        cell, bent = plane[i + 1, j + 1], bend[i + 1, j + 1]
+        x, z = cell + plane[i + 1, j], cell + plane[i, j + 1]
+        bx, bz = bent + bend[i + 1, j], bent + bend[i, j + 1]
         a0, a1, a2, a3, a4 = y[U_X, i, j], y[U_Y, i, j], y[W, i, j], y[PHI_X, i, j], y[PHI_Y, i, j]
         b0, b1, b2, b3, b4 = y[U_X, i + 1, j], y[U_Y, i + 1, j], y[W, i + 1, j], y[PHI_X, i + 1, j], y[PHI_Y, i + 1, j]
         c0, c1, c2, c3, c4 = y[U_X, i, j + 1], y[U_Y, i, j + 1], y[W, i, j + 1], y[PHI_X, i, j + 1], y[PHI_Y, i, j + 1]
@@ -51,17 +53,17 @@ def connections(i: int, ny: int, y: Array, intact: Array, springs: HalfSprings, 
         rows[NX + j] = kn * x * (b0 - a0)
         rows[SX + j] = ks * x * (b1 - a1)
         rows[QX + j] = ko * x * (b2 - a2 + half * (a3 + b3))
-        rows[BX + j] = gr * x * (b3 - a3)
-        rows[TX + j] = gt * x * (b4 - a4)
+        rows[BX + j] = gr * bx * (b3 - a3)
+        rows[TX + j] = gt * bx * (b4 - a4)
         rows[NY + j] = kn * z * (c1 - a1)
         rows[SY + j] = ks * z * (c0 - a0)
         rows[QY + j] = ko * z * (c2 - a2 + half * (a4 + c4))
-        rows[BY + j] = gr * z * (c4 - a4)
-        rows[TY + j] = gt * z * (c3 - a3)
+        rows[BY + j] = gr * bz * (c4 - a4)
+        rows[TY + j] = gt * bz * (c3 - a3)
         rows[D1 + j] = kd * cell * (e0 - a0 + e1 - a1)
         rows[D2 + j] = kd * cell * (b0 - c0 - b1 + c1)
-        rows[G1 + j] = gd * cell * (e3 - a3 + e4 - a4)
-        rows[G2 + j] = gd * cell * (b3 - c3 - b4 + c4)
+        rows[G1 + j] = gd * bent * (e3 - a3 + e4 - a4)
+        rows[G2 + j] = gd * bent * (b3 - c3 - b4 + c4)
 
 
 @compiled(nogil=True)
@@ -104,16 +106,17 @@ def gather(i: int, ny: int, motion: Motion, kick: PerNode, lever: float, pace: P
 
 
 @compiled(nogil=True)
-def pull_of_springs(motion: Motion, intact: Array, held: Array, springs: HalfSprings) -> float:
+def pull_of_springs(motion: Motion, intact: Intact, held: Array, springs: HalfSprings) -> float:
     """Force along x that nodes with ``held`` (n_x+1, m_y) 1 need against the springs [N]; else it is 0."""
     y, kn, ks, kd, total = motion.y, springs.K_n, springs.K_s, springs.K_n_dia, 0.0
+    plane = intact.plane
     for i in range(held.shape[0] - 1):
         row = 0.0
         for j in range(held.shape[1] - 1):
             a, b, c, e = held[i, j], held[i + 1, j], held[i, j + 1], held[i + 1, j + 1]
             if a != b or a != c or a != e:
-                cell = intact[i + 1, j + 1]
-                along, side = cell + intact[i + 1, j], cell + intact[i, j + 1]
+                cell = plane[i + 1, j + 1]
+                along, side = cell + plane[i + 1, j], cell + plane[i, j + 1]
                 x_a, x_b, x_c, x_e = y[U_X, i, j], y[U_X, i + 1, j], y[U_X, i, j + 1], y[U_X, i + 1, j + 1]
                 y_a, y_b, y_c, y_e = y[U_Y, i, j], y[U_Y, i + 1, j], y[U_Y, i, j + 1], y[U_Y, i + 1, j + 1]
                 row += (a - b) * kn * along * (x_b - x_a) + (a - c) * ks * side * (x_c - x_a)
@@ -123,7 +126,7 @@ def pull_of_springs(motion: Motion, intact: Array, held: Array, springs: HalfSpr
 
 
 @compiled(nogil=True)
-def sweep(motion: Motion, intact: Array, kick: PerNode, springs: HalfSprings, pace: Pace, rows: Array) -> None:
+def sweep(motion: Motion, intact: Intact, kick: PerNode, springs: HalfSprings, pace: Pace, rows: Array) -> None:
     """One step of all nodes without external forces, in place."""
     nx, ny = kick.u.shape
     rows[CARRIED:] = 0.0

@@ -67,10 +67,20 @@ class Scratch(NamedTuple):
     after: Array
 
 
+class Intact(NamedTuple):
+    """What cells give to their springs, over uniform ice: 1 where ice is as the mean, 0 where there is no cell.
+
+    (n_x+1, m_y) each, cell (i, j) at [i+1, j+1]; zero all around.
+    """
+
+    plane: Array  #: to those in the plane and in shear
+    bend: Array  #: to those of bending and torsion
+
+
 class Mesh(NamedTuple):
     """The lattice as the loops see it."""
 
-    intact: Array  #: (n_x+1, m_y) 1 or 0, cell (i, j) at [i+1, j+1]; zero all around
+    intact: Intact
     threshold: Array  #: (n_x, n_y) of `screen.overloaded` for cell (i, j), infinite where there is none
     held: Array  #: (n_x+1, m_y) 1 at nodes that are held along x, else 0
     kick: PerNode  #: dt / mass; zero where held [s/kg], [s/(kg m2)]
@@ -96,7 +106,7 @@ def motion(grid: Grid) -> Motion:
 
 def mesh(grid: Grid, held: BoolArray, kick: PerNode, springs: HalfSprings, pace: Pace, dt: float) -> Mesh:
     """A lattice of no cells; ``kick`` (nodes,) each. ValueError where the grid is too wide for the loops."""
-    wide, columns = _wide(grid), _wide(grid) - LANES
+    wide, columns = _wide(grid), columns_of(grid)
     if wide > LINE:
         raise ValueError(f"{grid.ny} nodes across are too many for the explicit engine: use at most {LINE - LANES}")
     room, padded, masses = aligned(3, 5, grid.nx + 1, wide), aligned(3, grid.nx, columns), aligned(3, grid.nx, columns)
@@ -108,7 +118,7 @@ def mesh(grid: Grid, held: BoolArray, kick: PerNode, springs: HalfSprings, pace:
         padded[k, :, : grid.ny] = values.reshape(grid.nx, grid.ny)
     np.divide(dt, padded, out=masses, where=padded > 0.0)
     return Mesh(
-        intact=aligned(grid.nx + 1, wide),
+        intact=Intact(aligned(grid.nx + 1, wide), aligned(grid.nx + 1, wide)),
         threshold=threshold,
         held=on_x,
         kick=PerNode(*padded),
@@ -121,7 +131,28 @@ def mesh(grid: Grid, held: BoolArray, kick: PerNode, springs: HalfSprings, pace:
 
 
 def _wide(grid: Grid) -> int:
-    return -(-grid.ny // LANES) * LANES + LANES
+    return columns_of(grid) + LANES
+
+
+def columns_of(grid: Grid) -> int:
+    """N_y, the nodes across rounded up to whole `LANES`."""
+    return -(-grid.ny // LANES) * LANES
+
+
+def at_cells(grid: Grid, values: Array, elsewhere: float) -> Array:
+    """Values (cells,) at the places of the cells, (n_x, n_y), and ``elsewhere`` where there is none."""
+    padded = aligned(grid.nx, columns_of(grid))
+    padded[:] = elsewhere
+    padded[: grid.nx - 1, : grid.ny - 1] = values.reshape(grid.nx - 1, grid.ny - 1)
+    return padded
+
+
+def at_places(grid: Grid, values: Array) -> Array:
+    """Values (cells,) at the places of the cells' nodes 0 in a row-by-row array of all nodes, 1 elsewhere."""
+    padded = np.ones((grid.nx + 1, _wide(grid)))
+    padded[: grid.nx - 1, : grid.ny - 1] = values.reshape(grid.nx - 1, grid.ny - 1)
+    flat: Array = padded.reshape(-1)
+    return flat
 
 
 def half_springs(s: Springs, d: float) -> HalfSprings:

@@ -28,7 +28,7 @@ class Screen(NamedTuple):
     """Constants of a law F_1 mean + R >= F_2 limit / E at the faces."""
 
     F_1: float
-    fibre: float  #: height of the faces [m]; for (4.17)-(4.20) h/2 sigma_t / sigma_f
+    fibre: Array  #: (n_x, n_y) height of the faces of cell (i, j) [m]; for (4.17)-(4.20) h/2 sigma_t / sigma_f
 
 
 def _combined(ice: Ice) -> tuple[float, float]:
@@ -47,9 +47,9 @@ SCREENED: dict[Judge, Callable[[Ice], tuple[float, float]]] = {
 }
 
 
-def screen_of(ice: Ice, judge: Judge = combined_tension) -> Screen:
-    """Constants of a law for this ice."""
-    return Screen(SCREENED[judge](ice)[0], bending_fibre(ice))
+def screen_of(ice: Ice, thick: Array, judge: Judge = combined_tension) -> Screen:
+    """Constants of a law for this ice; ``thick`` (n_x, n_y) is the thickness of cells over that of the ice."""
+    return Screen(SCREENED[judge](ice)[0], bending_fibre(ice) * thick)
 
 
 def thresholds(limits: Array, ice: Ice, d: float, judge: Judge = combined_tension) -> Array:
@@ -72,7 +72,7 @@ def reached(
     i: int, j: int, e: tuple[float, float, float], motion: Motion, screen: Screen, alpha: float, limit: float
 ) -> int:
     """How many faces of cell (i, j) with the `membrane_sums` e reach F_1 mean + R >= limit."""
-    y, v, f, fibre, (e11, e22, e12) = motion.y, motion.v, screen.F_1, screen.fibre, e
+    y, v, f, fibre, (e11, e22, e12) = motion.y, motion.v, screen.F_1, screen.fibre[i, j], e
     r0x = y[PHI_X, i + 1, j + 1] - y[PHI_X, i, j] - alpha * (v[PHI_X, i + 1, j + 1] - v[PHI_X, i, j])
     r0y = y[PHI_Y, i + 1, j + 1] - y[PHI_Y, i, j] - alpha * (v[PHI_Y, i + 1, j + 1] - v[PHI_Y, i, j])
     r1x = y[PHI_X, i + 1, j] - y[PHI_X, i, j + 1] - alpha * (v[PHI_X, i + 1, j] - v[PHI_X, i, j + 1])

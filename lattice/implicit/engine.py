@@ -9,7 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from lattice.assembly import foundation, in_plane_mass, in_plane_springs, out_of_plane_mass, out_of_plane_springs
+from lattice.assembly import (
+    CellSprings,
+    foundation,
+    in_plane_mass,
+    in_plane_springs,
+    out_of_plane_mass,
+    out_of_plane_springs,
+)
 from lattice.contact import EdgeContact, Lever, lever_of, point_displacement
 from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
@@ -20,6 +27,7 @@ from lattice.memory import Memory, remember
 from lattice.springs import SpringTable
 from lattice.state import State
 from lattice.stiffness import Springs
+from lattice.varied import Varied
 
 
 class Engine:
@@ -36,17 +44,21 @@ class Engine:
         held_in_plane: BoolArray,
         damping: float = 0.0,
         alpha: float = 0.0,
+        varied: Varied | None = None,
     ):
         """``held_in_plane`` (nodes,) nodes held in x and y, or (nodes, 2) each direction on its own.
 
-        ``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27).
+        ``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27), ``varied``
+        what differs from cell to cell.
         """
         self.grid, self.ice, self.alpha = grid, ice, alpha
         self.M_u, self.M_q = in_plane_mass(grid, ice), out_of_plane_mass(grid, ice)
         self.inertia_u, self.inertia_q = self.M_u, self.M_q  #: with which the nodes move, see `ExplicitEngine`
         self.C_q, self.k_f = foundation(grid, damping), foundation(grid, ice.k_f)
         self.rows_u, self.rows_q = in_plane_springs(springs), out_of_plane_springs(springs, grid.d)
-        self.springs_u, self.springs_q = SpringTable.of(grid, self.rows_u), SpringTable.of(grid, self.rows_q)
+        self.varied = Varied.uniform(grid.cells) if varied is None else varied
+        self._cells = tuple(CellSprings(rows, self.varied.springs) for rows in (self.rows_u, self.rows_q))
+        self.springs_u, self.springs_q = (SpringTable.of(grid, *springs) for springs in self._cells)
         self.held = np.broadcast_to(held_in_plane.reshape(grid.nodes, -1), (grid.nodes, 2))  #: (nodes, 2) in x and y
         self._held = self.held.ravel()
         self._intact = np.ones(grid.cells, bool)
@@ -64,8 +76,8 @@ class Engine:
             scale, free = 1.0 + self.alpha / a, np.zeros(3 * self.grid.nodes, bool)
             on_q = self.M_q / a**2 + self.C_q / a + self.k_f
             self._systems[dt] = (
-                CrackedSystem(self.grid, self.rows_u, self._intact, self.M_u / a**2, scale, self._held),
-                CrackedSystem(self.grid, self.rows_q, self._intact, on_q, scale, free),
+                CrackedSystem(self.grid, self._cells[0], self._intact, self.M_u / a**2, scale, self._held),
+                CrackedSystem(self.grid, self._cells[1], self._intact, on_q, scale, free),
             )
         self._in, self._out = self._systems[dt]
 
@@ -98,10 +110,10 @@ class Engine:
         """State of rest under constant forces (n, 2), (n, 3); a floe that nothing holds stays where it is in plane."""
         g, n = self.grid, self.grid.nodes
         supported = np.zeros(3 * n, bool)
-        q = CrackedSystem(g, self.rows_q, self._intact, self.k_f, 1.0, supported).solve(force_q.ravel())
+        q = CrackedSystem(g, self._cells[1], self._intact, self.k_f, 1.0, supported).solve(force_q.ravel())
         u = np.zeros(2 * n)
         if self._held.any():
-            u = CrackedSystem(g, self.rows_u, self._intact, np.zeros(2 * n), 1.0, self._held).solve(force_u.ravel())
+            u = CrackedSystem(g, self._cells[0], self._intact, np.zeros(2 * n), 1.0, self._held).solve(force_u.ravel())
         return State(u.reshape(n, 2), q.reshape(n, 3), np.zeros((n, 2)), np.zeros((n, 3)))
 
     def step(self, t: float, dt: float, state: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Step:

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from lattice.assembly import CellStiffness
 from lattice.compiled import compiled
 from lattice.grid import Array, BoolArray, Grid
 from lattice.implicit.dissection import Dissection, dissect
 
 
 @compiled()
-def factorise(s: Dissection, live: BoolArray, K_cell: Array, diagonal: Array, held: BoolArray) -> Array:
+def factorise(s: Dissection, live: BoolArray, cells: CellStiffness, diagonal: Array, held: BoolArray) -> Array:
     """Panels of all fronts, flat; ``live`` in the order of the cells, ``diagonal`` and ``held`` of the dof."""
     first, edge, edge_at, place = s.first, s.edge, s.edge_at, s.place
     panels = np.empty(s.panel_at[-1])
@@ -40,6 +41,7 @@ def factorise(s: Dissection, live: BoolArray, K_cell: Array, diagonal: Array, he
             where[rim[i]] = w + i
         for c in range(s.cell_at[k], s.cell_at[k + 1]):
             if live[c]:
+                K_cell = cells.K[cells.which[s.cells[c]]]
                 for i in range(place.shape[1]):
                     p = place[c, i]
                     if not held[a + p if p < w else rim[p - w]]:
@@ -137,10 +139,10 @@ def substitute_many(s: Dissection, panels: Array, x: Array) -> None:
 class Factors:
     """Factorised ``K(live) + diag`` with held degrees of freedom at zero."""
 
-    def __init__(self, grid: Grid, K_cell: Array, live: BoolArray, diagonal: Array, held: BoolArray):
-        s = self._s = dissect(grid, K_cell.shape[0] // 4)
+    def __init__(self, grid: Grid, cells: CellStiffness, live: BoolArray, diagonal: Array, held: BoolArray):
+        s = self._s = dissect(grid, cells.K.shape[1] // 4)
         self._held = np.flatnonzero(held[s.order])
-        self._panels = factorise(s, live[s.cells], np.ascontiguousarray(K_cell), diagonal[s.order], held[s.order])
+        self._panels = factorise(s, live[s.cells], cells, diagonal[s.order], held[s.order])
         self._work = np.empty(s.widest)
 
     def solve(self, b: Array) -> Array:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
+from lattice.assembly import CellSprings, cell_stiffness
 from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.implicit.factors import Factors
 from lattice.memory import Memory, remember
@@ -25,16 +26,19 @@ MAX_AT_ONCE = 4  #: cells removed between two uses at which a new factorisation 
 class CrackedSystem:
     """Solves ``(scale * K(intact) + diag) x = b`` with some degrees of freedom held at zero."""
 
-    def __init__(self, grid: Grid, rows: Array, intact: BoolArray, diagonal: Array, scale: float, held: BoolArray):
-        self._grid, self._rows = grid, np.sqrt(scale) * rows
-        self._diagonal, self._held, self._springs = diagonal, held, SpringTable.of(grid, rows)
+    def __init__(
+        self, grid: Grid, springs: CellSprings, intact: BoolArray, diagonal: Array, scale: float, held: BoolArray
+    ):
+        self._grid, self._rows = grid, np.sqrt(scale) * springs.rows
+        self._cell_stiffness = cell_stiffness(self._rows, springs.share)
+        self._diagonal, self._held, self._springs = diagonal, held, SpringTable.of(grid, *springs)
         self._dof = self._springs.dof
         self._intact = intact.copy()
         self._pending: list[int] = []
         self._factorise()
 
     def _factorise(self) -> None:
-        self._lu = Factors(self._grid, self._rows.T @ self._rows, self._intact, self._diagonal, self._held)
+        self._lu = Factors(self._grid, self._cell_stiffness, self._intact, self._diagonal, self._held)
         self._cells = np.empty(0, np.int64)  #: removed since
         self._Z = np.empty((len(self._held), 0))
         self._points = np.empty(0, np.int64)
@@ -64,14 +68,19 @@ class CrackedSystem:
         r = len(self._rows)
         U = np.zeros((len(self._held), r * len(cells)))
         for k, cell in enumerate(cells):
-            U[self._dof[cell], k * r : (k + 1) * r] = self._rows.T
+            U[self._dof[cell], k * r : (k + 1) * r] = (self._root(cell)[:, None] * self._rows).T
         U[self._held] = 0.0
         return U
 
     def _elongation(self, x: Array) -> Array:
         """U^T x of all removed cells, for x (n,) or (n, k) that is zero where held."""
         ends = x.reshape(len(x), -1)[self._dof[self._cells]]
-        return np.asarray((self._rows @ ends).reshape(-1, *x.shape[1:]))
+        long = self._root(self._cells)[:, :, None] * (self._rows @ ends)
+        return np.asarray(long.reshape(-1, *x.shape[1:]))
+
+    def _root(self, cell: IntArray | int) -> Array:
+        """Roots of the share of each spring of a cell or of cells (k,), (..., springs)."""
+        return np.asarray(np.sqrt(self._springs.share[cell][..., self._springs.kind]))
 
     def solve(self, b: Array) -> Array:
         """X for a right side b over all degrees of freedom, held ones come back as 0, (n,)."""

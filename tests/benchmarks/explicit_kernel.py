@@ -112,7 +112,7 @@ def engine(n: int) -> ExplicitEngine:
 
 def working_set(e: ExplicitEngine) -> int:
     """Bytes that a sub-step touches."""
-    return sum(a.nbytes for a in (*e.motion, *e.mesh.kick, e.mesh.intact, e.mesh.threshold))
+    return sum(a.nbytes for a in (*e.motion, *e.mesh.kick, *e.mesh.intact, e.mesh.threshold))
 
 
 def rates(n: int) -> dict[str, float]:

@@ -14,9 +14,9 @@ import pytest
 from cosim.cli import main
 from cosim.recording.reader import read_run
 from cosim.scenario.finding import locate
-from cosim.show.talk import Talk
-from cosim.study.command import run_sweep
-from cosim.study.table import Table
+from cosim.scenario.loading import checked
+from cosim.study.command import Where, plan
+from cosim.study.design import Design
 from coupling.interface import SimulationError
 
 FLOE = "van_vliet_2018_floe_165m"
@@ -285,18 +285,13 @@ def test_a_name_here_comes_before_one_of_the_project_and_a_bad_scenario_blocks_n
     assert locate(FLOE).resolve() == tmp_path / FLOE / "scenario.toml"
 
 
-def test_all_processes_of_a_sweep_read_the_same_file(tmp_path, monkeypatch):
-    """The order of names is one thing; the file is looked up once."""
+def test_all_processes_of_a_sweep_have_the_same_scenario(tmp_path, monkeypatch):
+    """It is read once, and goes to the processes as it was read."""
     monkeypatch.chdir(tmp_path)
     text = (Path(__file__).parents[2] / "scenarios" / FLOE / "scenario.toml").read_text("utf-8")
     (tmp_path / "scenarios" / FLOE).mkdir(parents=True)
     (tmp_path / "scenarios" / FLOE / "scenario.toml").write_text(text.replace("165 m floe", "mine"))
-    seen = []
-
-    def spy(scenario, overrides, variants, workers, done):
-        seen.append(scenario)
-
-    monkeypatch.setattr("cosim.study.command.sweep", spy)
-    content = run_sweep(FLOE, ["ice.thickness=1 m"], (), False, 2, Table(None), Talk())
-    assert content["scenario"].startswith("mine")
-    assert seen == [str(tmp_path / "scenarios" / FLOE / "scenario.toml")]
+    the = plan(FLOE, ["ice.thickness=1 m"], (), Design(), Where())
+    (tmp_path / "scenarios" / FLOE / "scenario.toml").unlink()
+    assert the.base.title.startswith("mine")
+    assert checked(the.study.written, the.variants[1].overrides).ice.thickness == 1.0

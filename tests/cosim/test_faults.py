@@ -209,6 +209,7 @@ def test_every_rule_can_be_broken(tmp_path):
         "times_are_whole_multiples": ["coupling.window='7 ms'"],
         "duration_is_whole": ["scenario.duration='10.01 s'"],
         "frames_are_whole": ["recording.every='10 ms'"],
+        "fields_are_drawn_or_read": ["ice.strength_field={}"],
     }
     assert set(changes) == {rule.__name__ for rule in RULES}
     file = tmp_path / "mine.toml"

@@ -102,12 +102,12 @@ sys.path.insert(0, sys.argv[1])
 from cosim.cli import main
 from cosim.study import sweep
 from test_killed import linger
-sweep.sweep.__defaults__ = (linger,)
+sweep.sweep.__defaults__ = (None, linger)
 main(["sweep", "van_vliet_2018_floe_165m", "--vary", "ice.thickness=1 m,2 m,3 m", "-j", "2", "-o", sys.argv[2]])
 """
 
 
-def linger(scenario, overrides, variant):
+def linger(study, number, variant):
     """A task that leaves the number of its process, and goes on for minutes unless it is the base."""
     with open(os.environ["PIDS"], "a") as file:
         file.write(f"{os.getpid()}\n")

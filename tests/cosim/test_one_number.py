@@ -12,10 +12,10 @@ from cosim.recording.metadata import fault
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.run import run_scenario
-from cosim.scenario.loading import load_scenario
+from cosim.scenario.loading import load_scenario, read_scenario
 from cosim.show.figures import draw_loads
 from cosim.show.report import content, write_report
-from cosim.study.sweep import run_variant
+from cosim.study.task import Study, run_variant
 from cosim.study.variants import Variant
 
 CASE = "van_vliet_2018_floe_55m_centre"
@@ -41,7 +41,7 @@ def test_every_command_tells_the_same_peaks(cosim, run, tmp_path):
     info = json.loads(cosim("info", path, "--json")[1])
     beside = json.loads(cosim("compare", path, "--json")[1])
     features = {f["name"]: f for f in beside["features"]}
-    swept = run_variant(CASE, TINY, Variant())
+    swept = run_variant(Study(read_scenario(CASE), TINY), 0, Variant())
     report = content(read_run(path))
     told = {
         "info": (info["peaks"]["fx"]["value"], info["peaks"]["fz"]["value"], info["averaging_s"]),

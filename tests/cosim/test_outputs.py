@@ -15,6 +15,7 @@ from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 from cosim.signals import StoppedError
+from cosim.study.sweep import row_of, with_ratios
 
 FLOE = "van_vliet_2018_floe_165m"
 SCENARIO = Path(__file__).parents[2] / "scenarios" / FLOE / "scenario.toml"
@@ -280,24 +281,23 @@ def test_a_recording_without_a_window_does_not_stay(synthetic, tmp_path):
     assert not path.exists()
 
 
-def row(variants, done, error=None):
+def quick(variants, done, error=None):
     """A sweep whose variants end at once, or with an error after the first."""
     load = {f"{c}_peak": 1e6 for c in ("fx", "fz", "f")} | {f"{c}_time": 1.0 for c in ("fx", "fz", "f")}
     phases = {f"{p}_fx_peak": 1.0 for p in ("breaking", "rotating", "sliding")}
     rows = []
-    for variant in variants:
-        values = {**load, **phases, "fx_mean": 1.0, "wall_s": 1.0, "simulated_s": 2.0, "error": None, "fx_ratio": 1.0}
-        values |= {"averaging_s": 0.5, "not_trustworthy": "", "fz_ratio": 1.0}
-        rows.append({"variant": variant.name, **dict(variant.changes), **values})
-        done(rows[-1], rows)
+    for k, variant in enumerate(variants):
+        values = {**load, **phases, "fx_mean": 1.0, "wall_s": 1.0, "simulated_s": 2.0}
+        rows.append(row_of(k, variant, values | {"averaging_s": 0.5, "not_trustworthy": ""}))
+        done(rows[-1])
         if error:
             raise error
-    return rows
+    return with_ratios(rows)
 
 
 @needs_full
 def test_a_sweep_shows_its_table_whatever_happens_to_the_file(cosim, case, monkeypatch, tmp_path):
-    monkeypatch.setattr("cosim.study.command.sweep", lambda s, o, variants, w, done: row(variants, done))
+    monkeypatch.setattr("cosim.study.command.sweep", lambda s, variants, r, done, k: quick(variants, done))
     code, out, err = cosim("sweep", case, "--vary", "ice.thickness=1 m,2 m", "-o", FULL)
     assert code == 1
     assert "ice.thickness = 2 m" in out
@@ -308,7 +308,7 @@ def test_a_sweep_shows_its_table_whatever_happens_to_the_file(cosim, case, monke
 
 def test_a_sweep_that_is_stopped_shows_what_has_ended(cosim, case, monkeypatch, tmp_path):
     stop = StoppedError(signal.SIGTERM)
-    monkeypatch.setattr("cosim.study.command.sweep", lambda s, o, variants, w, done: row(variants, done, stop))
+    monkeypatch.setattr("cosim.study.command.sweep", lambda s, variants, r, done, k: quick(variants, done, stop))
     code, out, err = cosim("sweep", case, "--vary", "ice.thickness=1 m,2 m", "-o", tmp_path / "t.csv")
     assert (code, err.splitlines()[-1]) == (143, "cosim: stopped by SIGTERM")
     assert "base" in out

@@ -9,12 +9,15 @@ import sys
 import pytest
 
 from cosim.errors import FailedError, InputError
+from cosim.scenario.loading import read_scenario
+from cosim.show.sweep_tables import show
 from cosim.show.tornado import tornado
-from cosim.study import sweep as sweeping
-from cosim.study.command import show
-from cosim.study.sweep import sweep, with_ratios
-from cosim.study.table import Table
-from cosim.study.variants import Axis, Variant, parse_axis, variants
+from cosim.study.design import Design
+from cosim.study.pool import Processes
+from cosim.study.sweep import row_of, sweep, with_ratios
+from cosim.study.table import CsvTable
+from cosim.study.task import Study, run_variant
+from cosim.study.variants import Axis, Variant, parse_axis
 
 CASE = "van_vliet_2018_floe_55m_centre"
 TINY = ("sheet.nodes=[12, 12]", "scenario.duration='1 s'", "rubble.initial_volume='60 m^3'")
@@ -51,15 +54,7 @@ def test_a_wrong_axis_is_one_line(text, says):
     assert "\n" not in str(error.value)
 
 
-def test_one_at_a_time_and_grid():
-    axes = [Axis("a.x", ("1", "2")), Axis("b.y", ("3",))]
-    assert [v.name for v in variants(axes, grid=False)] == ["base", "a.x = 1", "a.x = 2", "b.y = 3"]
-    assert [v.overrides for v in variants(axes, grid=True)] == [(), ("a.x=1", "b.y=3"), ("a.x=2", "b.y=3")]
-    with pytest.raises(InputError, match="twice"):
-        variants([axes[0], axes[0]], grid=True)
-
-
-def fake(scenario, overrides, variant):
+def fake(study, number, variant):
     """A task without solver; the value says what happens."""
     value = dict(variant.changes).get("a.x", "1")
     if value == "die":
@@ -71,8 +66,8 @@ def fake(scenario, overrides, variant):
 
 def test_a_failure_and_a_dead_process_stop_nothing():
     seen = []
-    chosen = variants([Axis("a.x", ("2", "fail", "die", "3"))], grid=False)
-    rows = sweep("x", (), chosen, 2, lambda row, ended: seen.append(row["variant"]), fake)
+    chosen = Design().variants([Axis("a.x", ("2", "fail", "die", "3"))], 0)
+    rows = sweep(None, chosen, Processes(2), lambda row: seen.append(row["variant"]), task=fake)
     assert [row.get("fx_peak") for row in rows] == [1.0, 2.0, None, None, 3.0]
     assert sorted(seen) == sorted(v.name for v in chosen)
     assert rows[2]["error"] == "it failed"
@@ -81,36 +76,49 @@ def test_a_failure_and_a_dead_process_stop_nothing():
     assert [row["fz_ratio"] for row in rows] == [1.0, 2.0, None, None, 3.0]
 
 
-def test_ratios_without_a_base_are_none():
-    rows = with_ratios([{"error": "no"}, {"fx_peak": 1.0}], {"error": "no"})
+def test_ratios_are_to_the_base_with_the_same_seed_wherever_it_stands():
+    def row(group, seed, peak):
+        return {"group": group, "seed": seed, "fx_peak": peak, "error": None}
+
+    rows = with_ratios([row("a", "1", 6.0), row("base", "2", 2.0), row("a", "2", 6.0), row("base", "1", 3.0)])
+    assert [r["fx_ratio"] for r in rows] == [2.0, 1.0, 3.0, 1.0]
+    rows = with_ratios([{"group": "base", "seed": None, "error": "no"}, row("a", None, 1.0)])
     assert rows[1]["fx_ratio"] is None
-    assert rows[1]["error"] is None
 
 
 @pytest.fixture(scope="module")
-def content():
+def study():
+    return Study(read_scenario(CASE), TINY)
+
+
+@pytest.fixture(scope="module")
+def content(study):
     """A sweep over two workers."""
-    chosen = variants([Axis("contact.strength", ("1 MPa",)), Axis("sheet.nodes", ("[14,14]", "[12,13]"))], grid=False)
-    rows = sweep(CASE, TINY, chosen, 2, lambda row, ended: None)
-    return {"scenario": "s", "keys": ["contact.strength", "sheet.nodes"], "variants": rows}
+    chosen = Design().variants([Axis("contact.strength", ("1 MPa",)), Axis("sheet.nodes", ("[14,14]", "[12,13]"))], 0)
+    rows = sweep(study, chosen, Processes(2), lambda row: None)
+    keys = ["contact.strength", "sheet.nodes"]
+    return {"scenario": "s", "keys": keys, "failed": 1, "variants": rows, "ensembles": [], "indices": []}
 
 
-def test_numbers_do_not_depend_on_the_pool(content):
+def bare(row):
+    return {k: v for k, v in row.items() if k != "wall_s"}
+
+
+def test_numbers_do_not_depend_on_the_pool(content, study):
     """Two workers, one after the other in one process, and this process: the same bits but for the cost."""
     chosen = [Variant(), Variant((("contact.strength", "1 MPa"),))]
-    one = sweep(CASE, TINY, chosen, 1, lambda row, ended: None)
-    here = [{"variant": v.name, **dict(v.changes), **sweeping.run_variant(CASE, TINY, v)} for v in chosen]
-    with_ratios(here, here[0])
+    one = sweep(study, chosen, Processes(1), lambda row: None)
+    here = with_ratios([row_of(k, v, run_variant(study, k, v)) for k, v in enumerate(chosen)])
     for a, b, c in zip(content["variants"], one, here, strict=False):
-        bare = [{k: v for k, v in row.items() if k != "wall_s"} for row in (a, b, c)]
-        assert bare[0] == bare[1] == bare[2]
+        assert bare(a) == bare(b) == bare(c)
     assert one[1]["fx_ratio"] > 2.0
 
 
 def test_the_table_holds_the_failed_variant_with_its_error(content, tmp_path):
     out = tmp_path / "t.csv"
-    with Table(out) as table:
-        table.write(content["keys"], content["variants"])
+    with CsvTable(out, content["keys"]) as table:
+        for row in content["variants"]:
+            table.add(row)
     with out.open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [row["variant"] for row in rows] == [
@@ -186,7 +194,7 @@ def test_a_wrong_base_is_refused_before_anything_runs():
 
 def test_a_variant_that_is_not_trustworthy_is_pointed_out(content, monkeypatch):
     lines = []
-    monkeypatch.setattr("cosim.study.command.print_line", lines.append)
+    monkeypatch.setattr("cosim.show.sweep_tables.print_line", lines.append)
     why = [{"not_trustworthy": "it is at its end"}, {"not_trustworthy": ""}, {"not_trustworthy": ""}, {}]
     show({**content, "variants": [row | t for row, t in zip(content["variants"], why, strict=True)]})
     assert lines[0] == "not trustworthy: base: because it is at its end"

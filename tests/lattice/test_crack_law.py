@@ -9,7 +9,7 @@ import pytest
 
 from lattice.cracks.cells import POINTS, WEIGHTS, Plate, room_for
 from lattice.cracks.evaluate import evaluate
-from lattice.cracks.law import CrackLaw, layer
+from lattice.cracks.law import CrackLaw, layer, local_of
 from lattice.cracks.motion import Layered, crack_forces
 from lattice.cracks.slopes import level
 
@@ -176,6 +176,8 @@ def test_a_hinge_at_middle_thickness_is_rejected():
 
 # ---- cells --------------------------------------------------------------------------------------------------------
 
+SAME = local_of(law(), *np.ones((3, 4)))
+
 
 def one_cell(angle=0.4, damage=0.0, nu=1 / 3):
     """A single layered cell on a 2 x 2 grid stored row by row (width 2)."""
@@ -197,7 +199,7 @@ def energy(cracks, plate, the_law, x):
 
 
 def nodal(cracks, plate, x):
-    crack_forces(2, np.ascontiguousarray(x), 1.0, Layered(1, cracks, plate, law(), level(4), leans=False))
+    crack_forces(2, np.ascontiguousarray(x), 1.0, Layered(1, cracks, plate, law(), level(4), leans=False, local=SAME))
     return cracks.force[:, :, 0]  # nodes (0,0), (1,0), (0,1), (1,1)
 
 

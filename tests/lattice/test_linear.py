@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lattice.assembly import in_plane_springs, out_of_plane_springs
+from lattice.assembly import CellSprings, in_plane_springs, out_of_plane_springs
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.implicit.linear import MAX_RANK, CrackedSystem
@@ -18,7 +18,7 @@ def system(rows, intact):
     n = GRID.nodes * rows.shape[1] // 4
     held = np.zeros(n, bool)
     held[: rows.shape[1] // 4 * GRID.ny] = True
-    return CrackedSystem(GRID, rows, intact, np.full(n, 1e7), 1.3, held)
+    return CrackedSystem(GRID, CellSprings(rows, np.ones((GRID.cells, 2))), intact, np.full(n, 1e7), 1.3, held)
 
 
 @pytest.mark.parametrize("name", TABLES)

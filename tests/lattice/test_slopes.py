@@ -34,7 +34,7 @@ def placed(e, u, q):
     e.set_cells(live, np.full(e.grid.cells, np.inf), np.ones(e.grid.nodes, bool))
     e.put(e.motion.y, np.hstack((u, q)))
     e.put(e.motion.v, np.zeros((e.grid.nodes, 5)))
-    look_at_slopes(e._nodes(), e.mesh.intact.reshape(-1), e.layered.view())
+    look_at_slopes(e._nodes(), e.mesh.intact.plane.reshape(-1), e.layered.view())
     return live
 
 

@@ -56,4 +56,18 @@ def criteria_have_their_strengths(m: Any) -> Faults:
             )
 
 
-RULES = (stiffness_is_positive, ice_floats, compression_is_strongest, criteria_have_their_strengths)
+def fields_are_drawn_or_read(m: Any) -> Faults:
+    """Each field of varying ice has either a variation or a file, and is not so wide that its distribution is none."""
+    for name in ("strength_field", "thickness_field", "modulus_field"):
+        field = getattr(m.ice, name)
+        if field is not None and (field.variation is None) == (not field.file):
+            yield fault(f"ice.{name}.variation", "give either a variation or a file, for example variation = 0.2")
+
+
+RULES = (
+    fields_are_drawn_or_read,
+    stiffness_is_positive,
+    ice_floats,
+    compression_is_strongest,
+    criteria_have_their_strengths,
+)
