@@ -13,6 +13,7 @@ from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
+from coupling.attack import Attack
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, RubbleParticipant, Structure
 from coupling.ledger import Ledger
@@ -183,9 +184,23 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
     )
 
 
+def build_attack(scenario: Scenario) -> Attack:
+    """Where forces act on the structure."""
+    columns, d = scenario.rubble.columns_per_section, scenario.sheet.spacing
+    pitch = columns * d
+    return Attack(build_structure(scenario), -scenario.sheet.axis + 0.5 * (pitch - d), pitch)
+
+
 def run_info(scenario: Scenario) -> RunInfo:
     """What stays constant over a run, for observers."""
-    mesh = build_structure(scenario).mesh(2.0 * scenario.sheet.width)
+    s = scenario.sheet
+    mesh = build_structure(scenario).mesh(2.0 * s.width)
     return RunInfo(
-        scenario, mesh, tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns, scenario.window_ns
+        scenario,
+        mesh,
+        tuple(s.nodes),
+        s.spacing,
+        scenario.duration_ns,
+        scenario.window_ns,
+        attack=build_attack(scenario),
     )

@@ -54,5 +54,6 @@ CHANNELS: dict[str, Channel] = {
     "/ice/sheet": Channel(SceneUpdate, When.MESH, views.ice_sheet),
     "/rubble/scene": Channel(SceneUpdate, When.PICTURE, views.rubble_scene),
     "/rubble/outline": Channel(PointCloud, When.PICTURE, views.rubble_outline),
+    "/load/contact": Channel(messages.Contact, When.PICTURE, numbers.contact),
     "/load/budget": Channel(messages.Ledger, When.WINDOW, numbers.budget),
 }

@@ -5,15 +5,37 @@ from __future__ import annotations
 import numpy as np
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
+from cosim.moments import grip_of
 from cosim.observer import RunInfo
 from cosim.recording import messages, scenes
 from coupling.interface import Event, Frame
 
 
-def load(_info: RunInfo, frame: Frame) -> bytes:
-    """`cosim.Load`: totals and the three phases [N]."""
-    values = np.concatenate([frame.load.sum(axis=0), frame.load.ravel()])
-    message = messages.Load(**dict(zip(messages.LOAD_FIELDS, values.tolist(), strict=True)))
+def load(info: RunInfo, frame: Frame) -> bytes:
+    """`cosim.Load`: totals and the three phases of force [N] and moment [N m], and where the load attacks [m]."""
+    grip = grip_of(frame, info.attack, info.scenario.moment_point)
+    values = {
+        messages.LOAD_FIELDS: (frame.load.sum(axis=0), frame.load.ravel()),
+        messages.MOMENT_FIELDS: (grip.moment.sum(axis=0), grip.moment.ravel()),
+        messages.GRIP_FIELDS: (grip.weight, grip.attack),
+    }
+    fields: dict[str, float] = {}
+    for names, parts in values.items():
+        fields |= zip(names, np.concatenate(parts).tolist(), strict=True)
+    message = messages.Load(**fields)
+    messages.stamp(message.stamp, frame.t_ns)
+    return scenes.as_bytes(message)
+
+
+def contact(info: RunInfo, frame: Frame) -> bytes:
+    """`cosim.Contact`: forces of the ice on the structure [N] at their places [m], of nodes (block -1) and blocks."""
+    forces = info.attack.points(frame.contact, frame.blocks)
+    columns = dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack((forces.position, forces.force)).T, strict=True))
+    message = messages.Contact(
+        phase=forces.phase.tolist(),
+        block=forces.block.tolist(),
+        **{name: values.tolist() for name, values in columns.items()},
+    )
     messages.stamp(message.stamp, frame.t_ns)
     return scenes.as_bytes(message)
 

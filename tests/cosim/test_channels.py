@@ -1,5 +1,7 @@
 """Bytes packed from arrays are what the official protobuf classes read."""
 
+import math
+
 import numpy as np
 import pytest
 from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
@@ -11,7 +13,7 @@ from cosim.recording.reader import messages as stored
 from cosim.recording.reader import read_run
 from cosim.scenario.loading import load_scenario
 from cosim.show import pictures
-from coupling.interface import BlockTable, Event, Frame, SheetView
+from coupling.interface import BlockTable, ContactForces, Event, Frame, SheetView
 
 
 @pytest.fixture(scope="module")
@@ -50,12 +52,34 @@ def window(t_ns, **content):
     return Frame(t_ns, none, BlockTable.empty(), **{"load": np.zeros((3, 3)), **content})
 
 
-def test_load_holds_totals_and_phases():
-    data = numbers.load(None, window(2_000_000_001, load=np.arange(9.0).reshape(3, 3) + 1))
+def test_load_holds_totals_and_phases(scenario, synthetic):
+    info = synthetic.run_info(scenario)
+    data = numbers.load(info, window(2_000_000_001, load=np.arange(9.0).reshape(3, 3) + 1))
     message = messages.Load.FromString(data)
     assert (message.stamp.seconds, message.stamp.nanos) == (2, 1)
     assert (message.fx, message.fy, message.fz) == (12.0, 15.0, 18.0)
     assert (message.breaking_fx, message.rotating_fy, message.sliding_fz) == (1.0, 5.0, 9.0)
+    assert math.isnan(message.attack_x)  # no force has a place
+
+
+def test_forces_at_their_places_and_their_moments(scenario, synthetic):
+    """Two forces of the sheet, one of them of a hinged piece: their places, their moments, the centre of both."""
+    info = synthetic.run_info(
+        load_scenario("van_vliet_2018_floe_165m", ['recording.moment_point=["0 m","0 m","-2 m"]'])
+    )
+    places, forces = np.array([[-15.0, 1.0, 0.5], [-14.0, -3.0, -0.5]]), np.array([[2.0, 0.0, 1.0], [6.0, 0.5, 0.0]])
+    touching = ContactForces(np.array([4, 7]), places, -forces, np.array([False, True]))
+    frame = window(10**9, contact=touching)
+    message = messages.Contact.FromString(numbers.contact(info, frame))
+    assert np.allclose(np.array([message.x, message.y, message.z]).T, places)
+    assert np.allclose(np.array([message.fx, message.fy, message.fz]).T, forces)
+    assert (list(message.phase), list(message.block)) == ([0, 1], [-1, -1])
+    load = messages.Load.FromString(numbers.load(info, frame))
+    arms = np.cross(places + [0.0, 0.0, 2.0], forces)
+    assert (load.breaking_my, load.rotating_mz) == pytest.approx((arms[0, 1], arms[1, 2]), rel=1e-12)
+    assert (load.mx, load.my, load.mz) == pytest.approx(tuple(arms.sum(axis=0)), rel=1e-12)
+    size = np.linalg.norm(forces, axis=1)
+    assert (load.attack_x, load.attack_y) == pytest.approx(tuple((size @ places)[:2] / size.sum()), rel=1e-12)
 
 
 def test_an_event_is_data_and_a_line():
