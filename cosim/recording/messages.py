@@ -1,5 +1,7 @@
 """Messages that no well-known schema covers: loads and moments by phase, forces at their places, events, the ledger.
 
+The pictures of sheet and blocks are among them; `cosim.recording.pictures` packs them.
+
 Built without a protobuf compiler. Foxglove plots them by path, for example ``/load/structure.breaking_fx``.
 """
 
@@ -16,6 +18,9 @@ LOAD_FIELDS = (*AXES, *(f"{phase}_{axis}" for phase in PHASES for axis in AXES))
 MOMENT_FIELDS = (*MOMENT_AXES, *(f"{phase}_{axis}" for phase in PHASES for axis in MOMENT_AXES))  #: [N m]; likewise
 #: sum of the magnitudes of the forces [N], and of each times its place [N m]; point of attack [m], nan without a load
 GRIP_FIELDS = ("weight", "weight_x", "weight_y", "weight_z", "attack_x", "attack_y", "attack_z")
+NAMES = ("Load", "Event", "Ledger", "Contact", "Sheet", "Blocks")
+SHEET_BYTES = ("dx", "dy", "z", "damage", "utilisation", "present", "intact")  #: see `cosim.recording.planes`
+BLOCKS_BYTES = ("id", "section", "phase", "corners", "x", "y", "z", "width", "corner_x", "corner_z")
 
 _Field = descriptor_pb2.FieldDescriptorProto
 
@@ -57,23 +62,23 @@ def _build() -> dict[str, Any]:
         ],
     )
     _message(file, "Ledger", [("name", text), ("value", number)], repeated=("name", "value"))
-    places = ("x", "y", "z", *AXES)
-    _message(
-        file,
-        "Contact",
-        [*((name, _Field.TYPE_FLOAT) for name in places), ("phase", _Field.TYPE_UINT32), ("block", whole)],
-        repeated=(*places, "phase", "block"),
-    )
+    places, raw, count = ("x", "y", "z", *AXES), _Field.TYPE_BYTES, _Field.TYPE_UINT32
+    contact = [*((name, _Field.TYPE_FLOAT) for name in places), ("phase", count), ("block", whole)]
+    _message(file, "Contact", contact, repeated=(*places, "phase", "block"))
+    grid = [
+        ("rows", count),
+        ("columns", count),
+        *((name, number) for name in ("quantum", "x", "y", "step_x", "step_y")),
+    ]
+    _message(file, "Sheet", [*grid, *((name, raw) for name in SHEET_BYTES)])
+    _message(file, "Blocks", [("quantum", number), *((name, raw) for name in BLOCKS_BYTES)])
     pool = descriptor_pool.Default()
     pool.Add(file)
-    return {
-        name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}"))
-        for name in ("Load", "Event", "Ledger", "Contact")
-    }
+    return {name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}")) for name in NAMES}
 
 
 _classes = _build()
-Load, Event, Ledger, Contact = (_classes[name] for name in ("Load", "Event", "Ledger", "Contact"))
+Load, Event, Ledger, Contact, Sheet, Blocks = (_classes[name] for name in NAMES)
 
 
 def stamp(message: Any, t_ns: int) -> None:

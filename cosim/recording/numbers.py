@@ -27,19 +27,6 @@ def load(info: RunInfo, frame: Frame) -> bytes:
     return scenes.as_bytes(message)
 
 
-def contact(info: RunInfo, frame: Frame) -> bytes:
-    """`cosim.Contact`: forces of the ice on the structure [N] at their places [m], of nodes (block -1) and blocks."""
-    forces = info.attack.points(frame.contact, frame.blocks)
-    columns = dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack((forces.position, forces.force)).T, strict=True))
-    message = messages.Contact(
-        phase=forces.phase.tolist(),
-        block=forces.block.tolist(),
-        **{name: values.tolist() for name, values in columns.items()},
-    )
-    messages.stamp(message.stamp, frame.t_ns)
-    return scenes.as_bytes(message)
-
-
 def ledger(_info: RunInfo, frame: Frame) -> bytes | None:
     """`cosim.Ledger`: named balances [SI]."""
     return named(frame.t_ns, frame.ledger)

@@ -9,19 +9,19 @@ import time
 import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import rerun as rr
-from google.protobuf.message import DecodeError
 from rerun.components import AggregationPolicy
 
 from cosim.analysis.run_data import RunData
 from cosim.errors import FailedError, InputError
 from cosim.outputs import whole
 from cosim.recording import shapes
-from cosim.recording.reader import messages
+from cosim.recording.reader import recorded_pictures, recorded_structure
 from cosim.show import pictures
 from cosim.show.console import print_line
 from cosim.show.layout import TIMELINE, blueprint, load_scale
@@ -96,22 +96,13 @@ def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
     for event in run.events:
         stream.set_time(TIMELINE, duration=event.t_ns / NS)
         stream.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
-    for mesh in _meshes(recording, run):
+    points, faces = recorded_structure(recording)
+    structure = pictures.flat_mesh("structure", 0, points, faces, shapes.STRUCTURE_RGB)
+    shown = (pictures.meshes(picture, float(run.metadata["thickness_m"])) for picture in recorded_pictures(recording))
+    for mesh in chain([structure], chain.from_iterable(shown)):
         stream.set_time(TIMELINE, duration=mesh.t_ns / NS)
         stream.log(f"world/{mesh.name}", _mesh(mesh), static=mesh.name == "structure")
     stream.flush()
-
-
-def _meshes(recording: Path, run: RunData) -> Iterator[pictures.Mesh]:
-    stored = messages(recording, pictures.TOPICS)
-    try:
-        yield from pictures.meshes(stored, float(run.metadata["thickness_m"]))
-    except (DecodeError, ValueError, IndexError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(
-            f"{recording}: a picture in it cannot be read: {error}; give a file that `cosim run` wrote"
-        ) from None
 
 
 def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:

@@ -152,7 +152,7 @@ def spoiled(content):
     """The pictures of the nodes hold something else."""
 
     def change(record):
-        if isinstance(record, Channel) and record.topic == "/ice/nodes":
+        if isinstance(record, Channel) and record.topic == "/ice/sheet":
             spoiled.channel = record.id
         if isinstance(record, Message) and record.channel_id == spoiled.channel:
             record.data = content

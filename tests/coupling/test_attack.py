@@ -102,7 +102,7 @@ def test_parallel_forces_have_no_moment_about_the_point_of_attack():
     forces = PointForces(places, size[:, None] * [0.6, 0.0, 0.8], np.zeros(30, np.int64), np.full(30, -1))
     centre = attack_of(weight_of(forces))
     assert np.abs(forces.moments(centre)).max() < 1e-12 * size.sum()
-    assert np.abs(forces.moments(centre + [0.1, 0, 0])).max() > 1.0
+    assert np.abs(forces.moments(centre + 0.1)).max() > 1.0
     nothing = PointForces(places[:0], places[:0], np.zeros(0, np.int64), np.zeros(0, np.int64))
     assert np.isnan(attack_of(weight_of(nothing))).all()
 
@@ -126,7 +126,9 @@ def test_moments_close_with_forces_and_places(windows):
         for phase in Phase:
             mine = found.phase == phase
             assert np.abs(found.force[mine].sum(axis=0) - frame.load[phase]).max() <= 1e-12 * size
-            by_hand = sum((np.cross(r, f) for r, f in zip(found.position[mine], found.force[mine])), np.zeros(3))
+            by_hand = np.zeros(3)
+            for r, f in zip(found.position[mine], found.force[mine], strict=True):
+                by_hand += np.cross(r, f)
             assert np.abs(found.moments(ORIGIN)[phase] - by_hand).max() <= 1e-12 * 20.0 * size
             loaded[phase] += bool(frame.load[phase].any())
         shifted = found.moments(ORIGIN) - np.cross(point, frame.load)
