@@ -33,6 +33,12 @@ MAGIC = {
     ".png": b"\x89PNG",
     ".html": b"<!doctype html",
     ".csv": b"variant,",
+    ".table.csv": b"time [s],",
+    ".parquet": b"PAR1",
+    ".nc": b"\x89HDF\r\n\x1a\n",
+    ".pvd": b"<?xml",
+    ".dat": b"# Brash",
+    ".mp4": b"\0\0\0",
     ".log": b"# cosim log",
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists

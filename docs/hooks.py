@@ -1,8 +1,8 @@
 """What mkdocs asks of this project: the scenario reference from the models, and pictures from ``scenarios/``.
 
-A page that holds `CHANNELS_MARKER` gets the table of what a recording holds. A page that holds `MARKER` gets in its place one table for each section of a scenario file. Keys, units, defaults and
-limits are those of the models; meanings are the comments ``#:`` that stand beside the fields. A key without a meaning
-is an error of the build.
+A page that holds `CHANNELS_MARKER` gets the table of what a recording holds. A page that holds `MARKER` gets in its
+place one table for each section of a scenario file. Keys, units, defaults and limits are those of the models; meanings
+are the comments ``#:`` that stand beside the fields. A key without a meaning is an error of the build.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Commands on a recording: replay, compare, report, info, recover."""
+"""Commands on a recording: replay, compare, export, info, recover, report."""
 
 from __future__ import annotations
 
@@ -74,6 +74,31 @@ def compare(
             write_pictures(pair, pictures)
     if as_json:
         print_json(objects[0] if len(objects) == 1 else objects)
+
+
+def export(
+    recording: RunArgument,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="the file; its ending says the form: .csv, .parquet, .nc or .h5, .pvd (ParaView), .dat (OpenFAST)",
+        ),
+    ],
+    table: Annotated[
+        str | None, typer.Option(help="of .csv and .parquet: loads (default), events, ledger, budget")
+    ] = None,
+) -> None:
+    """A recording in a form that other programs read."""
+    from cosim.export.write import FORMS, check
+    from cosim.export.write import export as write
+    from cosim.show.console import print_line
+    from cosim.show.opening import opened
+
+    check(output, table, recording)
+    write(opened(recording), recording, output, table)
+    print_line(f"{output}: written, {FORMS[output.suffix.lower()][1]}")
 
 
 def info(

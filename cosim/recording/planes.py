@@ -41,7 +41,7 @@ def pack_numbers(values: Array, quantum: float) -> bytes:
 
 def unpack_numbers(data: bytes, quantum: float) -> Array:
     """Numbers of `pack_numbers`."""
-    return unpack(data) * quantum
+    return unpack(data).astype(np.float64) * quantum
 
 
 def pack_bits(values: BoolArray) -> bytes:
@@ -60,4 +60,5 @@ def unpack_bits(data: bytes, count: int) -> BoolArray:
 def rounded(values: Array, bits: int = 12) -> Array:
     """Numbers with so many binary digits: the rest of their bytes is zero."""
     mantissa, exponent = np.frexp(values)
-    return np.asarray(np.ldexp(np.rint(mantissa * 2**bits) / 2**bits, exponent))
+    out: Array = np.ldexp(np.rint(mantissa * 2**bits) / 2**bits, exponent)
+    return out
