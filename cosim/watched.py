@@ -15,7 +15,7 @@ from cosim.signals import StopAfterWindow, StoppedError
 
 def simulate(scenario: Scenario, observers: Sequence[Observer]) -> dict[str, Any]:
     """Run and close the observers whatever happens; recordings tell how it ended. What ``cosim run --json`` prints."""
-    from cosim.run import run_scenario
+    from cosim.simulation import run_scenario
 
     watching = [*observers, StopAfterWindow()]
     try:

@@ -62,9 +62,10 @@ def has_data(title: str, run: RunData) -> bool:
     return all(there for word, there in needs.items() if word in title)
 
 
-def draw_loads(figure: Figure, run: RunData) -> None:
-    """Fx and Fz by phase, stacked, with the total as a line; means over the averaging time, as the peaks are."""
-    over, run = over_text(run.averaging), run.lasting
+def draw_loads(figure: Figure, run: RunData, seconds: float | None = None) -> None:
+    """Fx and Fz by phase, stacked, with the total as a line; means over a time [s], by default as the peaks are."""
+    seconds = run.averaging if seconds is None else seconds
+    over, run = over_text(seconds), run.averaged(seconds)
     scale = scale_of((np.abs(run.component(name)).max() for name in ("fx", "fz")), "N")
     axes = figure.subplots(2, 1, sharex=True)
     for ax, name, label in zip(axes, ("fx", "fz"), ("Fx", "Fz"), strict=True):

@@ -45,9 +45,9 @@ RESULTS = (
 def run_variant(scenario: str, overrides: Sequence[str], variant: Variant) -> Row:
     """Simulate one variant; what goes wrong becomes ``error``, one line. Runs in a process of the pool."""
     from cosim.errors import explain
-    from cosim.run import run_scenario
     from cosim.scenario.cost import cost_of, too_large
     from cosim.scenario.loading import load_scenario
+    from cosim.simulation import run_scenario
 
     try:
         loaded = load_scenario(scenario, (*overrides, *variant.overrides))

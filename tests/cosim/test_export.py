@@ -8,8 +8,8 @@ import pytest
 from cosim.export.tables import TABLES
 from cosim.recording.reader import read_run, recorded_pictures
 from cosim.recording.writer import Recorder
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from coupling.interface import PHASES, Phase
 
 CASE = "van_vliet_2018_floe_55m_centre"

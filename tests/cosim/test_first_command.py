@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from cosim.run import run_scenario
 from cosim.scenario.cost import cost_of
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text("utf-8")

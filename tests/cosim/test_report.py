@@ -7,10 +7,10 @@ import pytest
 
 from cosim.analysis.peaks import shares_at_peak
 from cosim.analysis.run_data import RunData
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
 from cosim.show.figures import ENERGY
 from cosim.show.report import content, write_report
+from cosim.simulation import run_scenario
 from coupling.budget import TERMS
 from coupling.energy import STORES
 from coupling.interface import Event
