@@ -24,9 +24,9 @@ MARKED = {
 
 def curves(run: RunData, over: float | None = None) -> Figure:
     """Fx and Fz by phase, means over a time [s], default the averaging time."""
-    from matplotlib.figure import Figure
+    from cosim.show.shown import Shown
 
-    figure = Figure(figsize=(9.0, 5.0), layout="constrained")
+    figure = Shown(figsize=(9.0, 5.0), layout="constrained")
     draw_curves(figure, run, over)
     return figure
 
@@ -45,19 +45,22 @@ def draw_curves(figure: Figure, run: RunData, over: float | None = None) -> None
 
 
 def _mark_peak(ax: Axes, run: RunData, name: str) -> None:
-    values = run.component(name)
+    values, drawn = run.component(name), np.asarray(ax.lines[0].get_ydata())
     k = int(np.abs(values).argmax())
-    line = ax.lines[0]
-    x, y = line.get_xdata(), line.get_ydata()
-    ax.plot(np.asarray(x)[k], np.asarray(y)[k], "o", ms=5, mfc="none", mec="#b03a2e", mew=1.5)
+    late, up = run.t[k] > 0.7 * run.t[-1], values[k] > 0.0
+    ax.plot(run.t[k], drawn[k], "o", ms=5, mfc="none", mec="#b03a2e", mew=1.5)
     ax.annotate(
-        f"{float(np.asarray(y)[k]):.3g} at {run.t[k]:.2f} s",
-        (float(np.asarray(x)[k]), float(np.asarray(y)[k])),
-        xytext=(6, 0 if values[k] > 0 else -8),
+        f"{drawn[k]:.3g} at {run.t[k]:.2f} s",
+        (float(run.t[k]), float(drawn[k])),
+        xytext=(-7 if late else 7, 4 if up else -4),
         textcoords="offset points",
+        ha="right" if late else "left",
+        va="bottom" if up else "top",
         fontsize=8,
         color="#b03a2e",
+        bbox={"fc": "w", "ec": "none", "pad": 0.8, "alpha": 0.8},
     )
+    ax.margins(y=0.16)
 
 
 def _mark_events(ax: Axes, run: RunData) -> None:
