@@ -140,7 +140,7 @@ class Run:
         from cosim.show.report import write_report
 
         with whole(writable(Path(out), ".html", [self.path]), ".html") as part:
-            write_report(self.data, part)
+            write_report(self.data, part, pictures=self.pictures())
         return Path(out)
 
     def save(self, out: str | Path, force: bool = False) -> Path:

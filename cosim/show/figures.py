@@ -10,6 +10,7 @@ import numpy as np
 from cosim.analysis.run_data import RunData
 from cosim.show import budget_figure
 from cosim.show.cells import over_text
+from cosim.show.ice.palette import PHASE_COLOURS
 from cosim.show.scale import scale_of
 from coupling.energy import LIMIT, LOAD_WORK
 from coupling.interface import PHASES, Array
@@ -17,7 +18,7 @@ from coupling.interface import PHASES, Array
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLOURS = {"breaking": "#2f7ebc", "rotating": "#e6812b", "sliding": "#3a9b5c"}
+COLOURS = PHASE_COLOURS
 #: where energy is or went: terms of `coupling.energy` that belong together, and their colour
 ENERGY = {
     "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),

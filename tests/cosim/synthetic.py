@@ -117,7 +117,7 @@ def blocks(scenario: Scenario, t: float) -> BlockTable:
     zero = np.zeros((n, 3))
     return BlockTable(
         np.arange(n),
-        np.repeat(np.arange(9), 2),
+        np.rint((np.array(centre)[:, 1] + scenario.sheet.axis) / scenario.sheet.spacing).astype(np.int64),
         np.array(phase, np.int64),
         np.full(n, 7 * h * 5.2 * 846),
         np.full(n, 5.2),
