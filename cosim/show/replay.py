@@ -1,11 +1,10 @@
 """`cosim replay`: a recording in rerun. Sheet, structure and blocks as solids, loads by phase, the log of events.
 
-Nothing is converted on disk: the recording is read and sent to a viewer, saved as .rrd, or photographed headless.
+Nothing is converted on disk: the recording is read and sent to a viewer, or saved as .rrd.
 """
 
 from __future__ import annotations
 
-import time
 import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,7 +17,7 @@ import rerun as rr
 from rerun.components import AggregationPolicy
 
 from cosim.analysis.run_data import RunData
-from cosim.errors import FailedError, InputError
+from cosim.errors import FailedError
 from cosim.outputs import whole
 from cosim.recording import shapes
 from cosim.recording.reader import recorded_pictures, recorded_structure
@@ -26,7 +25,7 @@ from cosim.show import pictures
 from cosim.show.console import print_line
 from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
-from cosim.show.viewer import headless_viewer, screen_viewer, wait_until_loaded, web_viewer
+from cosim.show.viewer import screen_viewer, web_viewer
 from coupling.interface import NS, PHASES, Phase
 
 APPLICATION = "cosim"
@@ -38,9 +37,9 @@ def save(recording: Path, out: Path) -> None:
     run = opened(recording)
     with whole(out, ".rrd") as part:
         try:
-            with _stream() as stream:
-                stream.save(part, default_blueprint=blueprint(run))
-                send(stream, recording, run)
+            with stream() as sink:
+                sink.save(part, default_blueprint=blueprint(run))
+                send(sink, recording, run)
         except RuntimeError as error:  # rerun's only one
             raise FailedError(f"{out}: {error}; free space or write elsewhere") from error
 
@@ -48,46 +47,24 @@ def save(recording: Path, out: Path) -> None:
 def open_viewer(recording: Path) -> None:
     """Open the viewer on this machine's screen."""
     run = opened(recording)
-    with screen_viewer() as url, _stream() as stream:
-        stream.connect_grpc(url, default_blueprint=blueprint(run))
-        send(stream, recording, run)
+    with screen_viewer() as url, stream() as sink:
+        sink.connect_grpc(url, default_blueprint=blueprint(run))
+        send(sink, recording, run)
 
 
 def serve(recording: Path, port: int | None = None, browser: bool = True) -> None:
     """Serve viewer and data to a browser on this machine, until interrupted."""
     run = opened(recording)
     with web_viewer(port) as (url, page, process):
-        with _stream() as stream:
-            stream.connect_grpc(url, default_blueprint=blueprint(run))
-            send(stream, recording, run)
+        with stream() as sink:
+            sink.connect_grpc(url, default_blueprint=blueprint(run))
+            send(sink, recording, run)
         print_line(page)
         print_line("this machine only; Ctrl-C ends it")
         if browser:
             webbrowser.open(page)
         code = process.wait()
     raise FailedError(f"the viewer ended by itself (exit code {code}); try again, or save a .rrd with --save")
-
-
-def screenshot(
-    recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050), fade: float = 6.0
-) -> list[str]:
-    """Write a picture at a simulated time [s], default the end; returns what the views complain about.
-
-    ``fade`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
-    """
-    run = opened(recording)
-    at = float(run.t[-1]) if at is None else at
-    if not 0 <= at <= run.t[-1]:
-        raise InputError(f"--time {at:g}: outside of the run; give 0 to {run.t[-1]:g} s")
-    with headless_viewer(size) as (url, client):
-        with _stream() as stream:
-            stream.connect_grpc(url, default_blueprint=blueprint(run))
-            send(stream, recording, run)
-        wait_until_loaded(client, run)
-        client.set_time(TIMELINE, duration=at, play_state="paused")
-        time.sleep(fade)
-        out.write_bytes(client.take_screenshot())
-        return [str(report) for view in client.get_state().views for report in view.reports]
 
 
 def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
@@ -139,9 +116,10 @@ def _level(kind: str) -> str:
 
 
 @contextmanager
-def _stream() -> Iterator[rr.RecordingStream]:
-    stream = rr.RecordingStream(APPLICATION)
+def stream() -> Iterator[rr.RecordingStream]:
+    """Where a run is sent to; let go of on the way out."""
+    sink = rr.RecordingStream(APPLICATION)
     try:
-        yield stream
+        yield sink
     finally:
-        stream.disconnect()
+        sink.disconnect()

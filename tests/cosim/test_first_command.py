@@ -34,5 +34,5 @@ def test_the_picture_is_that_of_the_case(scenario):
     shown = re.search(r"^!\[.*?\]\((\S+)\)", README, re.M)[1]
     assert (ROOT / shown).parent == scenario.folder
     assert (ROOT / shown).is_file()
-    at = float(re.search(r"--screenshot picture\.png --time (\d+)", README)[1])
+    at = float(re.search(r"--screenshot picture\.png --at (\d+)", README)[1])
     assert 0.0 < at <= scenario.duration_ns / 1e9

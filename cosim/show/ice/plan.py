@@ -9,10 +9,10 @@ import numpy as np
 from cosim.recording import shapes
 from cosim.recording.pictures import Picture
 from cosim.show.ice.history import Look
-from cosim.show.ice.palette import AGE, BLOCK, CRACK, EDGE, FORCE, STRUCTURE, UTILISATION, WATER
+from cosim.show.ice.palette import AGE, BLOCK, CRACK, EDGE, FORCE, STRUCTURE, WATER, colormap
 from cosim.show.ice.scene import Scene
 from cosim.show.scale import scale_of
-from coupling.interface import NS, Array, IntArray, Phase
+from coupling.interface import NS, Array, IntArray, Phase, SheetView
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,8 +22,8 @@ LEAST = 14.0  #: thicknesses that are shown in front at least
 FAINT = 0.06  #: cracks that are shallower than this share of the thickness are left out
 
 
-def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False) -> None:
-    """From above; around the structure, or the ``whole`` floe."""
+def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, bars: bool = True) -> None:
+    """From above; around the structure, or the ``whole`` floe; with ``bars`` of the colours."""
     from matplotlib.collections import LineCollection, PolyCollection
     from matplotlib.patches import Polygon
 
@@ -33,23 +33,21 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False) -> None:
     sheet = picture.sheet
     quads = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
     use = sheet.utilisation[quads].max(axis=1) if len(quads) else np.empty(0)
-    cells = PolyCollection(list(sheet.position[quads, :2]), array=use, cmap=UTILISATION, lw=0.3, zorder=2)
+    cells = PolyCollection(list(sheet.position[quads, :2]), array=use, cmap=colormap(), lw=0.3, zorder=2)
     cells.set_clim(0.0, 1.0)
     cells.set_edgecolor("face")
     ax.add_collection(cells)
     ax.add_collection(LineCollection(list(sheet.position[shapes.rim(quads), :2]), colors=EDGE, lw=0.7, zorder=4))
-    _draw_cracks(ax, picture, quads)
+    _draw_cracks(ax, picture)
     lost = _draw_failed(ax, picture, failures)
     _draw_blocks(ax, picture)
     outline = scene.waterline()
     ax.add_patch(Polygon(outline, closed=len(outline) > 2, fc=STRUCTURE, ec=EDGE, lw=0.8, zorder=6))
     _draw_forces(ax, scene, picture)
     ax.axhline(scene.centre(scene.section_at(look.section)), color=EDGE, lw=0.8, ls=(0, (6, 4)), zorder=7)
-    bar = ax.figure.colorbar(cells, ax=ax, shrink=0.6, pad=0.02)
-    bar.set_label("utilisation (fails at 1)", fontsize=8)
-    if lost is not None:
-        second = ax.figure.colorbar(lost, ax=ax, shrink=0.6, pad=0.02)
-        second.set_label("time of failure [s]", fontsize=8)
+    for shown, label in ((cells, "utilisation (fails at 1)"), (lost, "time of failure [s]")):
+        if bars and shown is not None:
+            ax.figure.colorbar(shown, ax=ax, shrink=0.6, pad=0.02).set_label(label, fontsize=8)
     ax.set(xlim=frame[:2], ylim=frame[2:], xlabel="x [m], the ice drifts to the right", ylabel="y [m]", aspect="equal")
     ax.set_title(f"from above at {picture.t_ns / NS:.2f} s", fontsize=9)
 
@@ -66,16 +64,26 @@ def extent(scene: Scene, picture: Picture, whole: bool) -> tuple[float, float, f
     return front - ahead, max(radius * BEHIND, front + 4 * scene.thickness), -aside, aside
 
 
-def _draw_cracks(ax: Axes, picture: Picture, quads: IntArray) -> None:
+def cracked_cells(sheet: SheetView) -> tuple[IntArray, Array]:
+    """Nodes (k, 4) of the cells that are cracked and hold, and the depth of their cracks (k,), part of the thickness.
+
+    Damage is known at nodes, as the mean of their cells: a cell of a line of cracks has nodes two of whose four cells
+    are cracked.
+    """
+    quads = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
+    depth = np.minimum(2.0 * sheet.damage[quads].min(axis=1), 1.0) if len(quads) else np.empty(0)
+    deep = np.flatnonzero(depth > FAINT)
+    return quads[deep], depth[deep]
+
+
+def _draw_cracks(ax: Axes, picture: Picture) -> None:
     """Cells that are cracked and hold: darker as their cracks are deeper."""
     from matplotlib.collections import PolyCollection
 
-    # a cell of a line of cracks has nodes two of whose four cells are cracked
-    depth = np.minimum(2.0 * picture.sheet.damage[quads].min(axis=1), 1.0) if len(quads) else np.empty(0)
-    deep = np.flatnonzero(depth > FAINT)
-    if len(deep):
-        cracks = PolyCollection(list(picture.sheet.position[quads[deep], :2]), fc=CRACK, lw=0, zorder=3)
-        cracks.set_alpha(list(np.clip(0.85 * depth[deep], 0.0, 0.85)))
+    quads, depth = cracked_cells(picture.sheet)
+    if len(quads):
+        cracks = PolyCollection(list(picture.sheet.position[quads, :2]), fc=CRACK, lw=0, zorder=3)
+        cracks.set_alpha(list(0.85 * depth))
         ax.add_collection(cracks)
 
 
