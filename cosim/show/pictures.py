@@ -9,8 +9,10 @@ import numpy as np
 
 from cosim.recording import shapes
 from cosim.recording.pictures import Picture
+from cosim.show.ice.scene import Scene
 from coupling.interface import Array, IntArray, Phase, SheetView
 
+TOWER_RGB, WATER_RGBA = (240, 240, 236), (70, 130, 170, 90)
 DRAWN = (Phase.ROTATING, Phase.SLIDING)  #: phases of blocks
 
 
@@ -23,7 +25,7 @@ class Mesh:
     vertices: Array  #: (v, 3) [m]
     faces: IntArray  #: (f, 3)
     normals: Array  #: (v, 3)
-    rgb: Array  #: (3,) or (v, 3), 0-255
+    rgb: Array  #: (3,) or (v, 3), 0-255; (4,) lets see through
 
 
 def meshes(picture: Picture, thickness: float) -> Iterator[Mesh]:
@@ -34,6 +36,40 @@ def meshes(picture: Picture, thickness: float) -> Iterator[Mesh]:
         used, compact = np.unique(faces[picture.blocks.phase[owner] == phase], return_inverse=True)
         name = f"rubble/{phase.name.lower()}"
         yield flat_mesh(name, picture.t_ns, points[used], compact.reshape(-1, 3), shapes.PHASE_RGB[phase])
+
+
+def still_meshes(structure: tuple[Array, IntArray], scene: Scene) -> Iterator[Mesh]:
+    """The structure, closed, with a tower that is drawn and not modelled, and the surface of the water."""
+    points, faces = structure
+    yield flat_mesh("structure", 0, points, faces, shapes.STRUCTURE_RGB)
+    if (tower := scene.tower()) is not None:
+        radius, low, high = tower
+        top = points[points[:, 2] > low - 1e-6 * max(1.0, abs(low))]
+        around = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+        if len(top):
+            lid = float(np.hypot(top[:, 0], top[:, 1]).max())
+            yield _disc("structure/lid", lid, low, shapes.STRUCTURE_RGB)
+        ring = radius * np.column_stack((np.cos(around), np.sin(around), np.zeros(48)))
+        body = np.concatenate([ring + np.array((0.0, 0.0, z)) for z in (low, high)])
+        k, following = np.arange(48), (np.arange(48) + 1) % 48
+        side = np.concatenate(
+            (np.column_stack((k, following, following + 48)), np.column_stack((k, following + 48, k + 48)))
+        )
+        yield flat_mesh("structure/tower", 0, body, side, TOWER_RGB)
+        yield _disc("structure/tower_top", radius, high, TOWER_RGB)
+    far = 1.5 * scene.width
+    corners = np.array([(-far, -far, 0.0), (far, -far, 0.0), (far, far, 0.0), (-far, far, 0.0)])
+    up = np.tile([0.0, 0.0, 1.0], (4, 1))
+    yield Mesh("water", 0, corners, np.array([(0, 1, 2), (0, 2, 3)]), up, np.array(WATER_RGBA, float))
+
+
+def _disc(name: str, radius: float, z: float, rgb: tuple[int, int, int]) -> Mesh:
+    """A round lid that faces up."""
+    around = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    rim = np.column_stack((radius * np.cos(around), radius * np.sin(around), np.full(48, z)))
+    k = np.arange(48)
+    faces = np.column_stack((k, (k + 1) % 48, np.full(48, 48)))
+    return flat_mesh(name, 0, np.concatenate((rim, [(0.0, 0.0, z)])), faces, rgb)
 
 
 def quads_of(sheet: SheetView) -> IntArray:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +15,21 @@ import numpy as np
 import rerun as rr
 from rerun.components import AggregationPolicy
 
+from cosim.analysis.lights import trust, trust_lines
 from cosim.analysis.run_data import RunData
 from cosim.errors import FailedError
 from cosim.outputs import whole
 from cosim.recording import shapes
+from cosim.recording.pictures import Picture
 from cosim.recording.reader import recorded_pictures, recorded_structure
 from cosim.show import pictures
 from cosim.show.console import print_line
+from cosim.show.ice.history import busiest
+from cosim.show.ice.scene import Scene, scene_of
+from cosim.show.ice.strips import FORCE_RGB, Strips, moving_strips, still_strips
 from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
+from cosim.show.pictures import still_meshes
 from cosim.show.viewer import screen_viewer, web_viewer
 from coupling.interface import NS, PHASES, Phase
 
@@ -67,22 +72,68 @@ def serve(recording: Path, port: int | None = None, browser: bool = True) -> Non
     raise FailedError(f"the viewer ended by itself (exit code {code}); try again, or save a .rrd with --save")
 
 
-def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
-    """All of a run: pictures of the recorded frames, loads of every window, events."""
-    _send_loads(stream, run)
+def send(sink: rr.RecordingStream, recording: Path, run: RunData) -> None:
+    """All of a run: pictures of the recorded frames, sections, plan, loads of every window, events, lights."""
+    _send_loads(sink, run)
+    sink.log("about", rr.TextDocument(about(run), media_type="text/markdown"), static=True)
     for event in run.events:
-        stream.set_time(TIMELINE, duration=event.t_ns / NS)
-        stream.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
-    points, faces = recorded_structure(recording)
-    structure = pictures.flat_mesh("structure", 0, points, faces, shapes.STRUCTURE_RGB)
-    shown = (pictures.meshes(picture, float(run.metadata["thickness_m"])) for picture in recorded_pictures(recording))
-    for mesh in chain([structure], chain.from_iterable(shown)):
-        stream.set_time(TIMELINE, duration=mesh.t_ns / NS)
-        stream.log(f"world/{mesh.name}", _mesh(mesh), static=mesh.name == "structure")
-    stream.flush()
+        sink.set_time(TIMELINE, duration=event.t_ns / NS)
+        sink.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
+    scene, section = scene_of(run), shown_section(run, recording)
+    for mesh in still_meshes(recorded_structure(recording), scene):
+        sink.log(f"world/{mesh.name}", _mesh(mesh), static=True)
+    for strips in still_strips(scene, section):
+        sink.log(strips.name, _strips(strips), static=True)
+    for picture in recorded_pictures(recording):
+        sink.set_time(TIMELINE, duration=picture.t_ns / NS)
+        for mesh in pictures.meshes(picture, scene.thickness):
+            sink.log(f"world/{mesh.name}", _mesh(mesh))
+        for strips in moving_strips(scene, picture, section):
+            sink.log(strips.name, _strips(strips))
+        sink.log("world/load", _arrow(picture, scene))
+    sink.flush()
 
 
-def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
+def shown_section(run: RunData, recording: Path) -> int:
+    """The section that bears most when the load is largest."""
+    if not len(run.t_ns):
+        return 0
+    peak, found = int(run.t_ns[int(run.lasting.component("f").argmax())]), None
+    for picture in recorded_pictures(recording):
+        if found is None or picture.t_ns <= peak:
+            found = picture
+    return scene_of(run).section_at(0.0 if found is None else busiest(found))
+
+
+def _strips(strips: Strips) -> Any:
+    if not strips.lines:
+        return rr.Clear(recursive=False)
+    radii = rr.Radius.ui_points(0.5 * strips.width)
+    return rr.LineStrips2D(strips.lines, colors=strips.rgb, radii=radii)
+
+
+def _arrow(picture: Picture, scene: Scene) -> Any:
+    """The load, its tip at the point of attack."""
+    total = picture.forces.force.sum(axis=0)
+    size = float(np.linalg.norm(total))
+    if size == 0.0:
+        return rr.Clear(recursive=False)
+    weight = np.linalg.norm(picture.forces.force, axis=1)
+    vector = total / size * 6.0 * scene.thickness
+    at = weight @ picture.forces.position / weight.sum()
+    return rr.Arrows3D(origins=[at - vector], vectors=[vector], colors=[FORCE_RGB], radii=0.12 * scene.thickness)
+
+
+def about(run: RunData) -> str:
+    """What is seen, and how far it can be trusted, as Markdown."""
+    lines = "\n".join(f"* {line}" for line in trust_lines(trust(run)))
+    return (
+        f"# {run.metadata['title']}\n\n{lines}\n\n* sheet: pale to red as its utilisation goes to 1, dark where it is "
+        "cracked\n* blocks: orange rotate, green slide\n* pink: the load at its point of attack\n"
+    )
+
+
+def _send_loads(sink: rr.RecordingStream, run: RunData) -> None:
     # curves are drawn in the order of their paths: the total first, so that it hides no phase
     series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
     run = run.lasting
@@ -94,15 +145,15 @@ def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
             width = 3.5 if phase is None else 1.6
             # no aggregation: the viewer would draw means over what falls on one pixel, and the peak would be lower
             line = rr.SeriesLines(names=name, colors=rgb, widths=width, aggregation_policy=AggregationPolicy.Off)
-            stream.log(path, line, static=True)
+            sink.log(path, line, static=True)
             values = rr.Scalars.columns(scalars=run.component(axis, phase) / scale.size)
-            stream.send_columns(path, indexes=[index], columns=values)
+            sink.send_columns(path, indexes=[index], columns=values)
 
 
 def _mesh(mesh: pictures.Mesh) -> Any:
     if not len(mesh.faces):
         return rr.Clear(recursive=False)
-    rgb = np.broadcast_to(mesh.rgb, mesh.vertices.shape).astype(np.uint8)
+    rgb = np.broadcast_to(mesh.rgb, (len(mesh.vertices), mesh.rgb.shape[-1])).astype(np.uint8)
     return rr.Mesh3D(
         vertex_positions=mesh.vertices.astype(np.float32),
         triangle_indices=mesh.faces,
