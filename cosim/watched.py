@@ -20,6 +20,8 @@ def simulate(scenario: Scenario, observers: Sequence[Observer]) -> dict[str, Any
     watching = [*observers, StopAfterWindow()]
     try:
         result: dict[str, Any] = run_scenario(scenario, watching).to_json()
+        for recorder in (o for o in observers if isinstance(o, Recorder)):
+            recorder.lights = result["trust"]
         return result
     except (Exception, StoppedError) as error:
         ending = one_line(explain(error)[0] if isinstance(error, Exception) else str(error))

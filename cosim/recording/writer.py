@@ -7,6 +7,7 @@ same scenario gives the same bits: stamps are simulated time, and nothing of the
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -36,6 +37,7 @@ class Recorder:
     def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS, force: bool = False) -> None:
         self.path, self.force = Path(path), force
         self.ending = "it was stopped"  #: why the run ended, if it ends before its duration
+        self.lights: Mapping[str, object] | None = None  #: how far the result can be trusted, of a run that has ended
         self.recorded_ns = 0  #: end of the last window in the file
         self._channels = channels
         self._file: IO[bytes] | None = None
@@ -80,7 +82,8 @@ class Recorder:
             drop(self.path)
             return
         ended = COMPLETE if self.recorded_ns >= self._info.duration_ns else self.ending
-        self._do(self._writer.add_metadata, END, sealed({"ended": ended}))
+        told = {} if self.lights is None else {"lights": json.dumps(self.lights)}
+        self._do(self._writer.add_metadata, END, sealed({"ended": ended} | told))
         self._do(self._writer.finish)
         self._do(self._file.close)
         self._file = None

@@ -10,6 +10,7 @@ import pytest
 
 import cosim
 from cosim.export.tables import load_units
+from cosim.show.ice.palette import PHASE_COLOURS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/python.md").read_text("utf-8")
@@ -114,10 +115,11 @@ def test_a_sweep_is_a_table():
 def test_ten_lines_give_a_plot(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     exec(compile(example("first_plot.py"), "first_plot.py", "exec"), {"__name__": "example"})
-    from PIL import Image
+    from PIL import Image, ImageColor
 
     image = np.asarray(Image.open(tmp_path / "load.png").convert("RGB"), int)
-    for rgb in ((99, 158, 205), (236, 161, 97)):  # breaking and rotating, seen through
+    for phase in ("breaking", "rotating"):
+        rgb = 0.75 * np.array(ImageColor.getrgb(PHASE_COLOURS[phase])) + 0.25 * 255.0  # seen through
         assert (np.abs(image - rgb).max(axis=2) < 12).sum() > 200, rgb
     assert (tmp_path / "loads.parquet").is_file()
     assert "circumferential" in capsys.readouterr().out

@@ -1,15 +1,18 @@
 """A run is written and read back; a killed one is recovered; the bits depend on the scenario alone."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from cosim.recording.reader import RecordingError, messages, read_run
+from cosim.recording.records import Records
 from cosim.recording.recover import recover
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 
+CASE = "van_vliet_2018_floe_55m_centre"
 WINDOWS = 240  # 12 s of 50 ms
 
 
@@ -43,6 +46,18 @@ def test_scenario_and_run_data_travel_along(run_file, tmp_path):
     assert run.texts["scenario.as-written.toml"] == original.text
     assert "feature" in run.texts["reference.toml"]
     assert (run.metadata["seed"], run.metadata["nodes"]) == ("2018", "[40, 40]")
+
+
+def test_the_lights_of_a_run_stand_last(tmp_path, cosim):
+    from mcap.records import Metadata
+
+    out = tmp_path / "r.mcap"
+    options = ("scenario.duration='200 ms'", "sheet.nodes=[12,12]", "rubble.enabled=false")
+    code, told, _ = cosim("run", CASE, "-o", out, "--json", "-q", *(f"--set={o}" for o in options))
+    assert code == 0
+    last = [r for r in Records(out) if isinstance(r, Metadata)][-1]
+    assert json.loads(last.metadata["lights"]) == json.loads(told)["trust"]
+    assert read_run(out).ended == "complete"
 
 
 def test_pictures_come_every_so_often_and_at_events(run_file):
