@@ -134,6 +134,8 @@ def pictures(stored: Iterable[tuple[str, int, bytes]]) -> Iterator[Picture]:
 
 def _read_sheet(data: bytes) -> SheetView:
     m = messages.Sheet.FromString(data)
+    if not (m.rows and m.columns and m.quantum > 0.0):
+        raise ValueError(f"a sheet of {m.rows} x {m.columns} nodes")
     shape = (m.rows, m.columns)
     cells = (max(m.rows - 1, 0), max(m.columns - 1, 0))
     away = np.stack([unpack_numbers(part, m.quantum) for part in (m.dx, m.dy, m.z)], axis=1)
@@ -147,6 +149,8 @@ def _read_sheet(data: bytes) -> SheetView:
 
 def _read_blocks(data: bytes) -> BlockShapes:
     m = messages.Blocks.FromString(data)
+    if not m.quantum > 0.0:
+        raise ValueError("blocks without a quantum")
     position = np.stack([unpack_numbers(part, m.quantum) for part in (m.x, m.y, m.z)], axis=1)
     away = np.stack([unpack_numbers(part, m.quantum) for part in (m.corner_x, m.corner_z)], axis=1)
     corners = unpack(m.corners)
