@@ -36,6 +36,11 @@ MAGIC = {
     ".parquet": b"PAR1",
     ".rows": b"# cosim rows",
     ".ice": b'"x","y","what"',
+    ".table.csv": b"time [s],",
+    ".nc": b"\x89HDF\r\n\x1a\n",
+    ".pvd": b"<?xml",
+    ".dat": b"# Brash",
+    ".mp4": b"\0\0\0",
     ".log": b"# cosim log",
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists

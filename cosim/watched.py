@@ -21,13 +21,15 @@ def simulate(
 ) -> dict[str, Any]:
     """Run and close the observers whatever happens; recordings tell how it ended. What ``cosim run --json`` prints.
 
-    ``at_end`` as in `cosim.run.run_scenario`.
+    ``at_end`` as in `cosim.simulation.run_scenario`.
     """
-    from cosim.run import run_scenario
+    from cosim.simulation import run_scenario
 
     watching = [*observers, StopAfterWindow()]
     try:
         result: dict[str, Any] = run_scenario(scenario, watching, at_end).to_json()
+        for recorder in (o for o in observers if isinstance(o, Recorder)):
+            recorder.lights = result["trust"]
         return result
     except (Exception, StoppedError) as error:
         ending = one_line(explain(error)[0] if isinstance(error, Exception) else str(error))

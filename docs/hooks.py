@@ -1,8 +1,8 @@
 """What mkdocs asks of this project: the scenario reference from the models, and pictures from ``scenarios/``.
 
-A page that holds `MARKER` gets in its place one table for each section of a scenario file. Keys, units, defaults and
-limits are those of the models; meanings are the comments ``#:`` that stand beside the fields. A key without a meaning
-is an error of the build.
+A page that holds `CHANNELS_MARKER` gets the table of what a recording holds. A page that holds `MARKER` gets in its
+place one table for each section of a scenario file. Keys, units, defaults and limits are those of the models; meanings
+are the comments ``#:`` that stand beside the fields. A key without a meaning is an error of the build.
 """
 
 from __future__ import annotations
@@ -14,10 +14,12 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from cosim.recording import channels
 from cosim.scenario.keys import kinds_of, meanings, model_of, range_of, sections, unit_of
 from cosim.scenario.model import ScenarioModel
 
 MARKER = "<!-- scenario reference -->"
+CHANNELS_MARKER = "<!-- channels -->"
 HEAD = "| key | unit | written as | default | meaning |\n|---|---|---|---|---|\n"
 ROOT = Path(__file__).parents[1]
 
@@ -36,6 +38,7 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     """Fills in the reference; paths to ``scenarios/``, right in the checkout, become those of the site."""
     if MARKER in markdown:
         markdown = markdown.replace(MARKER, reference(ScenarioModel))
+    markdown = markdown.replace(CHANNELS_MARKER, channels.table())
     up = "../" * page.file.src_uri.count("/")
     return re.sub(r"\]\((?:\.\./)+scenarios/", f"]({up}scenarios/", markdown)
 

@@ -23,6 +23,8 @@ LIBRARIES = {
     "zstandard": {"cosim/recording/records.py"},
     "mcap_protobuf": {"cosim/recording/writer.py"},
     "rerun": {"cosim/show/replay.py", "cosim/show/layout.py", "cosim/show/viewer.py"},
+    "pyvista": {"cosim/export/vtk.py", "cosim/show/view3d.py"},
+    "xarray": {"cosim/export/netcdf.py", "cosim/api/run.py"},
     "rerun_cli": {"cosim/show/viewer.py"},
 }
 SOLVER_LIBRARIES = {"pymunk": "rubble", "typer": "cosim", "rich": "cosim", "pydantic": "cosim", "pint": "cosim"}

@@ -27,11 +27,11 @@ from cosim.recording.channels import CHANNELS
 from cosim.recording.reader import messages as stored
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.section import Section
 from cosim.scenario.units import Length
+from cosim.simulation import run_scenario
 from cosim.structures import KINDS
 from coupling import schemes
 from coupling.ledger import Ledger

@@ -15,6 +15,9 @@ from coupling.interface import NS, PHASES, Array, Event, IntArray
 #: components of a load in recordings, and with the resultant ``f``
 AXES = ("fx", "fy", "fz")
 COMPONENTS = (*AXES, "f")
+#: components of a moment, and with the overturning one, about a horizontal axis, ``m``
+MOMENT_AXES = ("mx", "my", "mz")
+MOMENTS = (*MOMENT_AXES, "m")
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,8 @@ class RunData:
     budget: dict[str, Array] = field(default_factory=dict)  #: (n,) by term, see `coupling.budget` [N]; empty if unknown
     ended: str = "complete"  #: how the run ended, in words if it did not reach its duration or failed there
     cut: bool = False  #: the file ends before its end
+    moment: Array | None = None  #: (n, 3, 3) about `moment_point`: windows, phases, components; None: unknown [N m]
+    weight: Array | None = None  #: (n, 4) of the point of attack, see `cosim.moments.Grip.weight`; None: unknown
 
     @property
     def remark(self) -> str:
@@ -56,12 +61,24 @@ class RunData:
         return np.concatenate((self.t_ns[:1] - int(self.metadata["window_ns"]), self.t_ns[:-1]))
 
     def component(self, name: str, phase: str | None = None) -> Array:
-        """(n,) one component, ``fx``, ``fy``, ``fz`` or the resultant ``f``, of all phases or of one [N]."""
-        load = self.load.sum(axis=1) if phase is None else self.load[:, PHASES.index(phase)]
-        if name == "f":
-            return np.asarray(np.linalg.norm(load, axis=1))
-        out: Array = load[:, AXES.index(name)]
+        """(n,) one component, of `COMPONENTS` [N] or `MOMENTS` [N m], of all phases or of one.
+
+        ValueError: a moment of a run without any.
+        """
+        known = self.moment if name in MOMENTS else self.load
+        if known is None:
+            raise ValueError(f"{self.name} holds no moments")
+        values = known.sum(axis=1) if phase is None else known[:, PHASES.index(phase)]
+        if name in ("f", "m"):
+            return np.asarray(np.linalg.norm(values if name == "f" else values[:, :2], axis=1))
+        out: Array = values[:, (MOMENT_AXES if name in MOMENTS else AXES).index(name)]
         return out
+
+    @property
+    def moment_point(self) -> list[float]:
+        """Moments are about this point: x, y, z [m]."""
+        point: list[float] = json.loads(self.metadata["moment_point_m"])
+        return point
 
     @property
     def averaging(self) -> float:
@@ -74,9 +91,15 @@ class RunData:
             return self
         load = running_mean(self.begin_ns, self.t_ns, self.load, seconds)
         total = load.sum(axis=1)
+
+        def mean(values: Array | None) -> Array | None:
+            return None if values is None else running_mean(self.begin_ns, self.t_ns, values, seconds)
+
         return replace(
             self,
             load=load,
+            moment=mean(self.moment),
+            weight=mean(self.weight),
             events=tuple(replace(e, force=tuple(at_event(self.t_ns, total, e.t_ns).tolist())) for e in self.events),
             budget={
                 name: running_mean(self.begin_ns, self.t_ns, np.nan_to_num(term), seconds)

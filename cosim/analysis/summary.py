@@ -6,6 +6,7 @@ import json
 from typing import Any
 
 from cosim.analysis.lights import trust
+from cosim.analysis.moments import moments
 from cosim.analysis.peaks import peaks
 from cosim.analysis.run_data import RunData
 from coupling.interface import NS, PHASES
@@ -30,6 +31,7 @@ def summary(run: RunData) -> dict[str, Any]:
         "averaging_s": run.averaging,
         "peaks": peaks(run),
         "peaks_by_phase": {p: peaks(run, p) for p in PHASES},
+        "moments": moments(run),
         "trust": trust(run),
         "events": [
             {

@@ -37,6 +37,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "recover": recordings.recover,
     "list": scenarios.list_scenarios,
     "report": recordings.report,
+    "export": recordings.export,
     "verify": simulate.verify,
 }
 for _name, _command in COMMANDS.items():

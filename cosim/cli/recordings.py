@@ -1,46 +1,85 @@
-"""Commands on a recording: replay, compare, report, info, recover."""
+"""Commands on a recording: replay, compare, export, info, recover, report."""
 
 from __future__ import annotations
 
 import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from cosim.cli.grouping import grouped
 from cosim.cli.options import ForceOption, JsonOption, RunArgument, SeriesSetOption
 from cosim.cli.output import print_json
 from cosim.errors import InputError
 from cosim.outputs import whole, writable
 
 
+@dataclass(frozen=True)
+class Shown:
+    """Where a replay goes to; without any of them, to the viewer on the screen."""
+
+    save: Annotated[Path | None, typer.Option(help="write a rerun file (.rrd) instead of opening a viewer")] = None
+    web: Annotated[bool, typer.Option("--web", help="serve the viewer to a browser on this machine")] = False
+    screenshot: Annotated[Path | None, typer.Option(help="write a picture (.png), no screen needed")] = None
+    video: Annotated[Path | None, typer.Option(help="write a film of the recorded frames (.mp4)")] = None
+
+    def check(self, recording: Path) -> None:
+        """One of them at most, and its place can be written."""
+        places = (
+            ("--save", self.save, ".rrd"),
+            ("--screenshot", self.screenshot, ".png"),
+            ("--video", self.video, ".mp4"),
+        )
+        if sum((self.web, *(path is not None for _, path, _ in places))) > 1:
+            raise InputError("--save, --web, --screenshot and --video exclude each other; give one of them")
+        for _, path, kind in places:
+            if path is not None:
+                writable(path, kind, [recording])
+
+
+@grouped
 def replay(
     recording: RunArgument,
-    save: Annotated[Path | None, typer.Option(help="write a rerun file (.rrd) instead of opening a viewer")] = None,
-    web: Annotated[bool, typer.Option("--web", help="serve the viewer to a browser")] = False,
-    screenshot: Annotated[Path | None, typer.Option(help="write a picture (.png), no screen needed")] = None,
-    time: Annotated[float | None, typer.Option(help="simulated time of the picture in s; default the end")] = None,
+    shown: Shown,
+    at: Annotated[
+        float | None, typer.Option("--at", "--time", help="simulated time of the picture in s; default the end")
+    ] = None,
+    section: Annotated[
+        float | None, typer.Option(help="y of the section of the picture in m; default where most force acts")
+    ] = None,
 ) -> None:
-    """Look at a recording in rerun: sheet, structure, blocks, loads by phase, events."""
-    if sum((save is not None, web, screenshot is not None)) > 1:
-        raise InputError("--save, --web and --screenshot exclude each other; give one of them")
-    if time is not None and screenshot is None:
-        raise InputError("--time belongs to --screenshot; add --screenshot x.png")
-    for path, kind in ((save, ".rrd"), (screenshot, ".png")):
-        if path is not None:
-            writable(path, kind, [recording])
+    """Look at a recording: in rerun, as a picture, or as a film. Sheet, structure, blocks, sections, loads, events."""
+    shown.check(recording)
+    if (at is not None or section is not None) and shown.screenshot is None:
+        raise InputError("--at and --section belong to --screenshot; add --screenshot x.png")
+    if shown.screenshot is not None or shown.video is not None:
+        _draw(recording, shown, at, section)
+        return
     os.environ.setdefault("RUST_LOG", "off")  # rerun's own log; what goes wrong it says to us as well
     from cosim.show import replay as show
 
-    if save is not None:
-        show.save(recording, save)
-    elif screenshot is not None:
-        with whole(screenshot, ".png") as part:
-            show.screenshot(recording, part, time)
-    elif web:
+    if shown.save is not None:
+        show.save(recording, shown.save)
+    elif shown.web:
         show.serve(recording)
     else:
         show.open_viewer(recording)
+
+
+def _draw(recording: Path, shown: Shown, at: float | None, section: float | None) -> None:
+    from cosim.show.opening import opened
+    from cosim.show.progress import counted
+    from cosim.show.still import screenshot, video
+
+    run = opened(recording)
+    if shown.screenshot is not None:
+        with whole(shown.screenshot, ".png") as part:
+            screenshot(run, recording, part, at, section)
+    elif shown.video is not None:
+        with whole(shown.video, ".mp4") as part, counted("pictures") as told:
+            video(run, recording, part, told)
 
 
 def compare(
@@ -74,6 +113,31 @@ def compare(
             write_pictures(pair, pictures)
     if as_json:
         print_json(objects[0] if len(objects) == 1 else objects)
+
+
+def export(
+    recording: RunArgument,
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="the file; its ending says the form: .csv, .parquet, .nc or .h5, .pvd (ParaView), .dat (OpenFAST)",
+        ),
+    ],
+    table: Annotated[
+        str | None, typer.Option(help="of .csv and .parquet: loads (default), events, ledger, budget")
+    ] = None,
+) -> None:
+    """A recording in a form that other programs read."""
+    from cosim.export.write import FORMS, check
+    from cosim.export.write import export as write
+    from cosim.show.console import print_line
+    from cosim.show.opening import opened
+
+    check(output, table, recording)
+    write(opened(recording), recording, output, table)
+    print_line(f"{output}: written, {FORMS[output.suffix.lower()][1]}")
 
 
 def info(
@@ -121,6 +185,7 @@ def report(
     settings: SeriesSetOption = None,
 ) -> None:
     """One HTML page of a recording: loads by phase, balances, events, numbers beside reference and series."""
+    from cosim.recording.reader import recorded_pictures
     from cosim.series.compare import files
     from cosim.show.console import print_line
     from cosim.show.opening import opened
@@ -131,5 +196,5 @@ def report(
     run = opened(recording)
     measured = None if series is None else files(series, [run], settings or ())[0]
     with whole(output, ".html") as part:
-        write_report(run, part, measured)
+        write_report(run, part, measured, recorded_pictures(recording))
     print_line(f"{output}: written")

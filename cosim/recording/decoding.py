@@ -13,6 +13,7 @@ from cosim.recording import messages
 from coupling.interface import NS, Array, Event, IntArray
 
 DATA_TOPICS = ("/load/structure", "/events", "/ledger", "/load/budget")
+KEPT = (*messages.LOAD_FIELDS[3:], *messages.MOMENT_FIELDS[3:], *messages.GRIP_FIELDS[:4])  #: of a load; others follow
 Stored = tuple[str, int, bytes]  #: topic, time [ns], serialised message
 
 
@@ -37,22 +38,25 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
             message = messages.Ledger.FromString(data)
             named[topic].append((time, dict(zip(message.name, message.value, strict=True))))
     times = np.array(t_ns, np.int64)
+    columns = np.array(loads, float).reshape(-1, len(KEPT))
     return RunData(
         name,
         metadata,
         times,
-        np.array(loads, float).reshape(-1, 3, 3),
+        columns[:, :9].reshape(-1, 3, 3),
         tuple(events),
         _columns(times, named["/ledger"]),
         texts,
         _columns(times, named["/load/budget"]),
+        moment=columns[:, 9:18].reshape(-1, 3, 3),
+        weight=columns[:, 18:],
     )
 
 
 def _load(t_ns: int, data: bytes) -> list[float]:
-    """Forces of the phases [N]."""
+    """Forces [N] and moments [N m] of the phases, weights of the point of attack."""
     message = messages.Load.FromString(data)
-    forces: list[float] = [getattr(message, key) for key in messages.LOAD_FIELDS[3:]]
+    forces: list[float] = [getattr(message, key) for key in KEPT]
     if not all(map(math.isfinite, forces)):
         raise ValueError(f"the load at {t_ns / NS:g} s is not finite")
     return forces

@@ -1,4 +1,6 @@
-"""Messages that no well-known schema covers: loads by phase, events with their forces, the ledger.
+"""Messages that no well-known schema covers: loads and moments by phase, forces at their places, events, the ledger.
+
+The pictures of sheet and blocks are among them; `cosim.recording.pictures` packs them.
 
 Built without a protobuf compiler. Foxglove plots them by path, for example ``/load/structure.breaking_fx``.
 """
@@ -9,10 +11,16 @@ from typing import Any
 
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory, timestamp_pb2
 
-from cosim.analysis.run_data import AXES
+from cosim.analysis.run_data import AXES, MOMENT_AXES
 from coupling.interface import NS, PHASES
 
 LOAD_FIELDS = (*AXES, *(f"{phase}_{axis}" for phase in PHASES for axis in AXES))  #: [N]; totals, then by phase
+MOMENT_FIELDS = (*MOMENT_AXES, *(f"{phase}_{axis}" for phase in PHASES for axis in MOMENT_AXES))  #: [N m]; likewise
+#: sum of the magnitudes of the forces [N], and of each times its place [N m]; point of attack [m], nan without a load
+GRIP_FIELDS = ("weight", "weight_x", "weight_y", "weight_z", "attack_x", "attack_y", "attack_z")
+NAMES = ("Load", "Event", "Ledger", "Contact", "Sheet", "Blocks")
+SHEET_BYTES = ("dx", "dy", "z", "damage", "utilisation", "present", "intact")  #: see `cosim.recording.planes`
+BLOCKS_BYTES = ("id", "section", "phase", "corners", "x", "y", "z", "width", "corner_x", "corner_z")
 
 _Field = descriptor_pb2.FieldDescriptorProto
 
@@ -36,7 +44,7 @@ def _build() -> dict[str, Any]:
     number, text, whole = _Field.TYPE_DOUBLE, _Field.TYPE_STRING, _Field.TYPE_INT64
     file = descriptor_pb2.FileDescriptorProto(name="cosim.proto", package="cosim", syntax="proto3")
     file.dependency.append(timestamp_pb2.DESCRIPTOR.name)
-    _message(file, "Load", [(name, number) for name in LOAD_FIELDS])
+    _message(file, "Load", [(name, number) for name in (*LOAD_FIELDS, *MOMENT_FIELDS, *GRIP_FIELDS)])
     _message(
         file,
         "Event",
@@ -54,16 +62,23 @@ def _build() -> dict[str, Any]:
         ],
     )
     _message(file, "Ledger", [("name", text), ("value", number)], repeated=("name", "value"))
+    places, raw, count = ("x", "y", "z", *AXES), _Field.TYPE_BYTES, _Field.TYPE_UINT32
+    contact = [*((name, _Field.TYPE_FLOAT) for name in places), ("phase", count), ("block", whole)]
+    _message(file, "Contact", contact, repeated=(*places, "phase", "block"))
+    grid = [
+        ("rows", count),
+        ("columns", count),
+        *((name, number) for name in ("quantum", "x", "y", "step_x", "step_y")),
+    ]
+    _message(file, "Sheet", [*grid, *((name, raw) for name in SHEET_BYTES)])
+    _message(file, "Blocks", [("quantum", number), *((name, raw) for name in BLOCKS_BYTES)])
     pool = descriptor_pool.Default()
     pool.Add(file)
-    return {
-        name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}"))
-        for name in ("Load", "Event", "Ledger")
-    }
+    return {name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}")) for name in NAMES}
 
 
 _classes = _build()
-Load, Event, Ledger = _classes["Load"], _classes["Event"], _classes["Ledger"]
+Load, Event, Ledger, Contact, Sheet, Blocks = (_classes[name] for name in NAMES)
 
 
 def stamp(message: Any, t_ns: int) -> None:

@@ -12,7 +12,7 @@ from cosim import provenance
 from cosim.observer import RunInfo
 from cosim.scenario.lengths import characteristic_length
 
-FORMAT = "2"  #: of recordings; goes up with every change that an older reader would misread
+FORMAT = "3"  #: of recordings; goes up with every change that an older reader would misread
 RUN, END = "run", "end"  #: names of the records: what was asked, how it ended
 COMPLETE = "complete"  #: how a run ended that reached its duration and did not fail there
 SEAL = "crc32"
@@ -39,6 +39,8 @@ def run_metadata(info: RunInfo, texts: Mapping[str, str]) -> dict[str, str]:
         "window_ns": str(info.window_ns),
         "averaging_s": repr(float(scenario.averaging)),
         "characteristic_length_m": repr(characteristic_length(scenario.model)),
+        "units": json.dumps({"force": "N", "moment": "N m", "length": "m", "time": "s", "energy": "J", "mass": "kg"}),
+        "moment_point_m": json.dumps(scenario.moment_point),
         "attachments": json.dumps(list(texts)),
     }
 
@@ -105,5 +107,7 @@ CHECKS: dict[str, Callable[[str], bool]] = {
     "window_ns": _whole(1),
     "averaging_s": lambda text: 0.0 <= float(text) < math.inf,
     "characteristic_length_m": _length,
+    "units": lambda text: isinstance(json.loads(text), dict),
+    "moment_point_m": _list_of(float, 3),
     "attachments": _list_of(str),
 }

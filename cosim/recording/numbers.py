@@ -5,15 +5,24 @@ from __future__ import annotations
 import numpy as np
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
+from cosim.moments import grip_of
 from cosim.observer import RunInfo
 from cosim.recording import messages, scenes
 from coupling.interface import Event, Frame
 
 
-def load(_info: RunInfo, frame: Frame) -> bytes:
-    """`cosim.Load`: totals and the three phases [N]."""
-    values = np.concatenate([frame.load.sum(axis=0), frame.load.ravel()])
-    message = messages.Load(**dict(zip(messages.LOAD_FIELDS, values.tolist(), strict=True)))
+def load(info: RunInfo, frame: Frame) -> bytes:
+    """`cosim.Load`: totals and the three phases of force [N] and moment [N m], and where the load attacks [m]."""
+    grip = grip_of(frame, info.attack, info.scenario.moment_point)
+    values = {
+        messages.LOAD_FIELDS: (frame.load.sum(axis=0), frame.load.ravel()),
+        messages.MOMENT_FIELDS: (grip.moment.sum(axis=0), grip.moment.ravel()),
+        messages.GRIP_FIELDS: (grip.weight, grip.attack),
+    }
+    fields: dict[str, float] = {}
+    for names, parts in values.items():
+        fields |= zip(names, np.concatenate(parts).tolist(), strict=True)
+    message = messages.Load(**fields)
     messages.stamp(message.stamp, frame.t_ns)
     return scenes.as_bytes(message)
 

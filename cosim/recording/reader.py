@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 from google.protobuf.message import DecodeError
 from mcap.records import Attachment, Channel, McapRecord, Message, Metadata, Schema
@@ -14,8 +15,13 @@ from cosim.analysis.run_data import RunData
 from cosim.recording import metadata as meta
 from cosim.recording.channels import CHANNELS
 from cosim.recording.decoding import DATA_TOPICS, Stored, decode
+from cosim.recording.pictures import TOPICS, Picture, pictures
 from cosim.recording.records import DamageError, RecordingError, Records
+from cosim.recording.scenes import triangles_of
+from coupling.interface import Array, IntArray
 
+T = TypeVar("T")
+STRUCTURE = "/structure/scene"
 TEXTS = ("scenario.toml", "scenario.as-written.toml", "reference.toml")  #: attachments that are used
 CUT_OFF = "its end is missing"  #: how a run ended whose file was cut off
 
@@ -35,6 +41,31 @@ def messages(path: str | Path, topics: Sequence[str]) -> Iterator[Stored]:
     for record in in_order(Path(path), Records(Path(path))):
         if isinstance(record, tuple) and record[0] in topics:
             yield record
+
+
+def recorded_pictures(path: str | Path) -> Iterator[Picture]:
+    """What the recorded frames show, in order; RecordingError if one cannot be read."""
+    yield from _read(Path(path), pictures(messages(path, TOPICS)))
+
+
+def recorded_structure(path: str | Path) -> tuple[Array, IntArray]:
+    """Surface of the structure: points (p, 3) [m] and triangles (q, 3); RecordingError if it cannot be read."""
+    stored = (triangles_of(data) for _, _, data in messages(path, [STRUCTURE]))
+    found = next(_read(Path(path), stored), None)
+    if found is None:
+        raise RecordingError(f"{path}: no structure is recorded; give a file that `cosim run` wrote")
+    return found
+
+
+def _read(path: Path, items: Iterator[T]) -> Iterator[T]:
+    try:
+        yield from items
+    except RecordingError:
+        raise
+    except (DecodeError, ValueError, IndexError, OverflowError, MemoryError) as error:
+        raise RecordingError(
+            f"{path}: a picture in it cannot be read: {error}; give a file that `cosim run` wrote"
+        ) from None
 
 
 def in_order(path: Path, records: Iterable[McapRecord]) -> Iterator[McapRecord | Stored]:

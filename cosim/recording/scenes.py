@@ -12,6 +12,7 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.PackedElementField_pb2 import PackedElementField
 from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
 from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from foxglove_schemas_protobuf.TriangleListPrimitive_pb2 import TriangleListPrimitive
 
 from cosim.recording import wire
@@ -22,7 +23,7 @@ WORLD = "world"
 POINT = np.dtype(
     [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("red", "u1"), ("green", "u1"), ("blue", "u1"), ("alpha", "u1")]
 )
-NODE = np.dtype([*POINT.descr, ("damage", "<f4"), ("utilisation", "<f4"), ("present", "u1"), ("node", "<u4")])
+NODE = np.dtype([*POINT.descr, ("damage", "<f4"), ("utilisation", "<f4"), ("node", "<u4")])
 _KINDS = {"f4": PackedElementField.FLOAT32, "u1": PackedElementField.UINT8, "u4": PackedElementField.UINT32}
 
 
@@ -78,6 +79,15 @@ def scene(t_ns: int, name: str, triangle_lists: list[bytes]) -> bytes:
     entity.lifetime.SetInParent()
     body = as_bytes(entity) + b"".join(wire.nested(12, item) for item in triangle_lists)
     return wire.nested(2, body)
+
+
+def triangles_of(data: bytes) -> tuple[Array, IntArray]:
+    """Points and triangles of the first list of a scene."""
+    item = SceneUpdate.FromString(data).entities[0].triangles[0]
+    return (
+        np.array([(p.x, p.y, p.z) for p in item.points]).reshape(-1, 3),
+        np.array(item.indices, np.int64).reshape(-1, 3),
+    )
 
 
 def transform(t_ns: int, child: str) -> bytes:

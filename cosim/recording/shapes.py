@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
-from coupling.interface import Array, BlockTable, BoolArray, IntArray, Phase
+from coupling.interface import Array, BoolArray, IntArray, Phase
 
 #: one colour per phase, in pictures, curves and the legend
 PHASE_RGB = {Phase.BREAKING: (86, 180, 233), Phase.ROTATING: (240, 150, 40), Phase.SLIDING: (0, 190, 140)}
@@ -67,7 +69,36 @@ def solid_sheet(position: Array, quads: IntArray, thickness: float) -> tuple[Arr
     return vertices, all_triangles, np.concatenate([np.arange(n), np.arange(n), side_node])
 
 
-def prisms(blocks: BlockTable) -> tuple[Array, IntArray, IntArray]:
+class Bodies(Protocol):
+    """What of blocks makes their shape; see `coupling.interface.BlockTable`."""
+
+    @property
+    def count(self) -> int:
+        """Number of blocks."""
+        ...
+
+    @property
+    def width(self) -> Array:
+        """Extents along y [m]."""
+        ...
+
+    @property
+    def position(self) -> Array:
+        """Centres (n, 3) [m]."""
+        ...
+
+    @property
+    def outline(self) -> Array:
+        """Corners (v, 2) in x and z [m]."""
+        ...
+
+    @property
+    def offset(self) -> IntArray:
+        """(n + 1,): where the corners of each begin."""
+        ...
+
+
+def prisms(blocks: Bodies) -> tuple[Array, IntArray, IntArray]:
     """Points, triangles and the block of every triangle: convex outlines in x-z, extruded by the block's width."""
     points, faces, owner, base = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)], 0
     for i in range(blocks.count):
@@ -108,7 +139,7 @@ def along_edges(points: Array, edges: IntArray, spacing: float) -> tuple[Array, 
     return a[owner] * (1 - along) + b[owner] * along, owner
 
 
-def prism_edges(blocks: BlockTable) -> tuple[IntArray, IntArray]:
+def prism_edges(blocks: Bodies) -> tuple[IntArray, IntArray]:
     """Edges of all prisms, as numbers of the points of `prisms`, and the block of each edge."""
     edges, owner, base = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)], 0
     for i, k in enumerate(np.diff(blocks.offset)):

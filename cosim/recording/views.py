@@ -1,4 +1,8 @@
-"""Channels of pictures: structure, sheet and blocks as viewers draw them. Each gives one serialised message."""
+"""What stock viewers draw by themselves: structure, sheet and blocks as scenes (Foxglove) and points (rerun).
+
+They are made now and then, from what the packed pictures hold in every recorded frame (`cosim.recording.pictures`).
+Coordinates and colours are rounded so that they compress. Each function gives one serialised message.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +10,10 @@ import numpy as np
 
 from cosim.observer import RunInfo
 from cosim.recording import scenes, shapes
-from coupling.interface import BlockTable, Frame, Phase, SheetView
+from coupling.interface import Array, BlockTable, Frame, Phase, SheetView
 
-POINTS_ON_STRUCTURE, POINTS_ON_BLOCK = 3, 5  #: along an edge, on one thickness of the ice
+POINTS_ON_STRUCTURE, POINTS_ON_BLOCK = 3, 3  #: along an edge, on one thickness of the ice
+FINE = 256.0  #: coordinates are multiples of a power of two not above this part of the thickness
 
 
 def structure_place(_info: RunInfo) -> bytes:
@@ -30,9 +35,9 @@ def structure_points(info: RunInfo) -> bytes:
     return scenes.points(0, sampled, np.tile(np.array(shapes.STRUCTURE_RGB, float), (len(sampled), 1)))
 
 
-def ice_nodes(_info: RunInfo, frame: Frame) -> bytes:
+def ice_nodes(info: RunInfo, frame: Frame) -> bytes:
     """Nodes that are still part of the lattice."""
-    return nodes(frame.t_ns, frame.sheet)
+    return nodes(frame.t_ns, frame.sheet, info.thickness)
 
 
 def ice_sheet(info: RunInfo, frame: Frame) -> bytes:
@@ -40,23 +45,24 @@ def ice_sheet(info: RunInfo, frame: Frame) -> bytes:
     return sheet_solid(frame.t_ns, frame.sheet, info.thickness)
 
 
-def rubble_scene(_info: RunInfo, frame: Frame) -> bytes:
+def rubble_scene(info: RunInfo, frame: Frame) -> bytes:
     """Blocks as prisms."""
-    return prisms(frame.t_ns, frame.blocks)
+    return prisms(frame.t_ns, frame.blocks, info.thickness)
 
 
 def rubble_outline(info: RunInfo, frame: Frame) -> bytes:
     """Points along the edges of the blocks, dense enough to be seen as blocks by a viewer that draws points only."""
-    return outline(frame.t_ns, frame.blocks, info.thickness / POINTS_ON_BLOCK)
+    return outline(frame.t_ns, frame.blocks, info.thickness)
 
 
-def nodes(t_ns: int, sheet: SheetView) -> bytes:
+def nodes(t_ns: int, sheet: SheetView, thickness: float) -> bytes:
     """Point cloud of the nodes that are still part of the lattice; ``node`` is their number."""
     kept = np.flatnonzero(sheet.present)
     data = np.empty(len(kept), scenes.NODE)
-    scenes.fill(data, sheet.position[kept], shapes.ice_colour(sheet.damage[kept], sheet.utilisation[kept]))
-    data["damage"], data["utilisation"] = sheet.damage[kept], sheet.utilisation[kept]
-    data["present"], data["node"] = 1, kept
+    rgb = shapes.ice_colour(sheet.damage[kept], sheet.utilisation[kept])
+    scenes.fill(data, coarse(sheet.position[kept], thickness), rgb)
+    data["damage"], data["utilisation"] = (coarse(v[kept], 1.0) for v in (sheet.damage, sheet.utilisation))
+    data["node"] = kept
     return scenes.cloud(t_ns, data)
 
 
@@ -64,24 +70,30 @@ def sheet_solid(t_ns: int, sheet: SheetView, thickness: float) -> bytes:
     """Scene of the intact cells as a solid of this thickness [m]."""
     quads = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
     vertices, faces, node = shapes.solid_sheet(sheet.position, quads, thickness)
-    rgb = shapes.ice_colour(sheet.damage, sheet.utilisation)[node]
-    return scenes.scene(t_ns, "sheet", [scenes.triangle_list(vertices, faces, rgb)])
+    rgb = 8.0 * np.rint(shapes.ice_colour(sheet.damage, sheet.utilisation)[node] / 8.0) * (255.0 / 256.0)
+    return scenes.scene(t_ns, "sheet", [scenes.triangle_list(coarse(vertices, thickness), faces, rgb)])
 
 
-def prisms(t_ns: int, blocks: BlockTable) -> bytes:
+def prisms(t_ns: int, blocks: BlockTable, thickness: float) -> bytes:
     """Scene of the blocks, one list of triangles for each phase."""
     points, faces, owner = shapes.prisms(blocks)
     lists = []
     for phase in (Phase.ROTATING, Phase.SLIDING):
         used, compact = np.unique(faces[blocks.phase[owner] == phase], return_inverse=True)
         colour = np.array(shapes.PHASE_RGB[phase], float)
-        lists.append(scenes.triangle_list(points[used], compact.reshape(-1, 3), colour))
+        lists.append(scenes.triangle_list(coarse(points[used], thickness), compact.reshape(-1, 3), colour))
     return scenes.scene(t_ns, "rubble", lists)
 
 
-def outline(t_ns: int, blocks: BlockTable, spacing: float) -> bytes:
-    """Point cloud along the edges of the blocks, at most ``spacing`` [m] apart."""
+def outline(t_ns: int, blocks: BlockTable, thickness: float) -> bytes:
+    """Point cloud along the edges of the blocks."""
     edges, block = shapes.prism_edges(blocks)
-    points, edge = shapes.along_edges(shapes.prisms(blocks)[0], edges, spacing)
+    points, edge = shapes.along_edges(shapes.prisms(blocks)[0], edges, thickness / POINTS_ON_BLOCK)
     colour = np.array([shapes.PHASE_RGB[p] for p in Phase], float)
-    return scenes.points(t_ns, points, colour[blocks.phase[block[edge]]])
+    return scenes.points(t_ns, coarse(points, thickness), colour[blocks.phase[block[edge]]])
+
+
+def coarse(values: Array, size: float) -> Array:
+    """Multiples of the largest power of two that is not above ``size`` / `FINE`."""
+    unit = 2.0 ** np.floor(np.log2(size / FINE))
+    return np.asarray(np.rint(values / unit) * unit)

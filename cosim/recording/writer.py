@@ -7,6 +7,7 @@ same scenario gives the same bits: stamps are simulated time, and nothing of the
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -24,7 +25,7 @@ from cosim.scenario.files import read_toml
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Event, Frame
 
-MESH_EVERY = 4  #: recorded frames between two meshes of a sheet in which no cell fails
+VIEWS = 60  #: in a run, of what stock viewers draw
 
 
 class Recorder:
@@ -37,6 +38,7 @@ class Recorder:
         self.path, self.force = Path(path), force
         self.ending = "it was stopped"  #: why the run ended, if it ends before its duration or in an error
         self.failed = False  #: it ended in an error, perhaps at its very end
+        self.lights: Mapping[str, object] | None = None  #: how far the result can be trusted, of a run that has ended
         self.recorded_ns = 0  #: end of the last window in the file
         self._channels = channels
         self._file: IO[bytes] | None = None
@@ -48,7 +50,7 @@ class Recorder:
         """Open the file and write all that holds for the whole run."""
         self._info = run_info
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
-        self._cells, self._since_mesh, self._due_ns = -1, 0, self._every_ns
+        self._due_ns, self._view_ns = self._every_ns, 0
         texts = attachments(run_info.scenario)
         self._file = grow(self.path, ".mcap", self.force)
         self._writer = new_writer(self._file)
@@ -67,7 +69,7 @@ class Recorder:
         for event in frame.events:
             self._write(event.t_ns, {When.EVENT}, event)
         if self._is_recorded(frame):
-            self._write(frame.t_ns, {When.PICTURE, When.MESH} if self._with_mesh(frame) else {When.PICTURE}, frame)
+            self._write(frame.t_ns, {When.PICTURE, When.VIEW} if self._with_view(frame) else {When.PICTURE}, frame)
         self._do(self._writer.flush)
         self.recorded_ns = frame.t_ns
 
@@ -82,7 +84,8 @@ class Recorder:
             return
         reached = self.recorded_ns >= self._info.duration_ns
         ended = COMPLETE if reached and not self.failed else self.ending
-        self._do(self._writer.add_metadata, END, sealed({"ended": ended}))
+        told = {} if self.lights is None else {"lights": json.dumps(self.lights)}
+        self._do(self._writer.add_metadata, END, sealed({"ended": ended} | told))
         self._do(self._writer.finish)
         self._do(self._file.close)
         self._file = None
@@ -117,10 +120,11 @@ class Recorder:
             self._due_ns = (frame.t_ns // self._every_ns + 1) * self._every_ns
         return first or last or bool(frame.events) or due
 
-    def _with_mesh(self, frame: Frame) -> bool:
-        cells = int(frame.sheet.intact.sum())
-        due = cells != self._cells or self._since_mesh >= MESH_EVERY - 1
-        self._cells, self._since_mesh = cells, 0 if due else self._since_mesh + 1
+    def _with_view(self, frame: Frame) -> bool:
+        """At the start, at the end, and evenly between."""
+        due = frame.t_ns >= min(self._view_ns, self._info.duration_ns)
+        if due:
+            self._view_ns = frame.t_ns + self._info.duration_ns // VIEWS
         return due
 
     def _register(self) -> None:

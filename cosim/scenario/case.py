@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import unicodedata
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
 from cosim.scenario.limits import Limits
 from cosim.scenario.section import Section
-from cosim.scenario.units import Time
+from cosim.scenario.units import Height, Time, Unit, list_of
 
 
 def _without_controls(text: str) -> str:
@@ -21,6 +21,8 @@ def _without_controls(text: str) -> str:
     return text
 
 
+_Coordinate = Annotated[Height, Limits("-1000 m", "1000 m", "0 m")]
+Place: Any = list_of(Unit("m", "0 m", '["0 m", "0 m", "-20 m"]'), _Coordinate, _Coordinate, _Coordinate)
 Line = Annotated[str, AfterValidator(_without_controls), Field(max_length=200)]
 
 
@@ -42,3 +44,5 @@ class Recording(Section):
     #: peaks are those of the mean load over this time; default half a second at ice of 1 m, by Froude's law for other
     #: ice: 0.5 s (h / 1 m)^0.5 at 9.81 m/s2, see `cosim.analysis.sustained` [s]
     averaging: Annotated[Time, Limits("1 us", "1000 s", "0.5 s")] = None
+    #: x, y and z of the point about which moments are told; default the waterline on the structure's axis, z up [m]
+    moment_point: Place = None

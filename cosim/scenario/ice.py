@@ -177,6 +177,11 @@ class Fracture(Section):
     longest_step: Annotated[Time, Limits("1 us", "100 s", "50 ms")] = None
 
     @property
+    def marches(self) -> bool:
+        """Whether the sheet is on the explicit engine."""
+        return self.cracks == "closing" or self.propagation == "dynamic"
+
+    @property
     def judged(self) -> tuple[str, ...]:
         """Names of the criteria that are judged."""
         if self.criteria is not None:

@@ -51,6 +51,12 @@ class Scenario:
         return averaging_time(self.model.ice.thickness, self.model.water.gravity) if given is None else given
 
     @property
+    def moment_point(self) -> tuple[float, float, float]:
+        """Moments are told about this point; the waterline on the axis unless the scenario says another [m]."""
+        given: tuple[float, float, float] | None = self.model.recording.moment_point
+        return (0.0, 0.0, 0.0) if given is None else given
+
+    @property
     def window_ns(self) -> int:
         """Length of the first time window [ns]."""
         window: float = self.model.coupling.window

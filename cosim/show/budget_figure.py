@@ -16,16 +16,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+#: told apart by people who do not see red from green (Okabe and Ito 2008)
 COLOURS = {
-    "dry_tops": "#e6812b",
-    "flooded_rubble": "#3a9b5c",
-    "pressed_sheet": "#2f7ebc",
-    "drag": "#8d6cab",
+    "dry_tops": "#e69f00",
+    "flooded_rubble": "#009e73",
+    "pressed_sheet": "#0072b2",
+    "drag": "#cc79a7",
     "inertia": "#b8bfc6",
-    "held": "#5aa9c4",
-    "staggering": "#e3c04b",
+    "held": "#56b4e9",
+    "staggering": "#f0e442",
 }
-OTHER = "#20707a"  #: of loads on the sheet
+OTHER = "#1d2733"  #: of loads on the sheet
 
 
 def draw(figure: Figure, run: RunData) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from cosim.analysis.run_data import RunData
 from cosim.show import budget_figure
 from cosim.show.cells import over_text
+from cosim.show.ice.palette import PHASE_COLOURS
 from cosim.show.scale import scale_of
 from coupling.energy import LIMIT, LOAD_WORK
 from coupling.interface import PHASES, Array
@@ -17,7 +18,7 @@ from coupling.interface import PHASES, Array
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLOURS = {"breaking": "#2f7ebc", "rotating": "#e6812b", "sliding": "#3a9b5c"}
+COLOURS = PHASE_COLOURS
 #: where energy is or went: terms of `coupling.energy` that belong together, and their colour
 ENERGY = {
     "crushing at the edge": ("#2f7ebc", ("contact_crushing_loss", "edge_crushed_loss")),
@@ -65,9 +66,10 @@ def has_data(title: str, run: RunData) -> bool:
     return all(there for word, there in needs.items() if word in title)
 
 
-def draw_loads(figure: Figure, run: RunData) -> None:
-    """Fx and Fz by phase, stacked, with the total as a line; means over the averaging time, as the peaks are."""
-    over, run = over_text(run.averaging), run.lasting
+def draw_loads(figure: Figure, run: RunData, seconds: float | None = None) -> None:
+    """Fx and Fz by phase, stacked, with the total as a line; means over a time [s], by default as the peaks are."""
+    seconds = run.averaging if seconds is None else seconds
+    over, run = over_text(seconds), run.averaged(seconds)
     scale = scale_of((np.abs(run.component(name)).max() for name in ("fx", "fz")), "N")
     axes = figure.subplots(2, 1, sharex=True)
     for ax, name, label in zip(axes, ("fx", "fz"), ("Fx", "Fz"), strict=True):

@@ -1,4 +1,4 @@
-"""How the viewer is laid out: two cameras, loads, events."""
+"""How the viewer is laid out: two cameras, section, plan, loads, events, lights."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ import rerun.blueprint as rrb
 from cosim.analysis.run_data import RunData
 from cosim.scenario.units import si_of
 from cosim.show.cells import over_text
+from cosim.show.ice.scene import Scene, scene_of
+from cosim.show.ice.section import extent as section_extent
 from cosim.show.scale import Scale, scale_of
 
 TIMELINE = "simulated_time"
 
 
 def blueprint(run: RunData) -> rrb.Blueprint:
-    """Two cameras on the left, of the sheet and of the rubble; loads and events on the right."""
+    """On the left two cameras, the section and the plan; on the right loads, events and lights."""
     f = _nearness(run)
     reach = 0.5 * float(run.metadata["spacing_m"]) * max(_nodes(run))
     above = _view(
@@ -28,7 +30,11 @@ def blueprint(run: RunData) -> rrb.Blueprint:
         (-0.3 * reach - 8 * f, -4 * f, -4 * f),
         (24, 34, 52),
     )
-    below = _rubble_view(run)
+    scene = scene_of(run)
+    flat = rrb.Horizontal(
+        _flat("section", "Section: orange = rotating, green = sliding, pink = forces", section_extent(scene, 0.0)),
+        _flat("plan", "From above: pieces, cracks (red), blocks", _plan_bounds(scene)),
+    )
     scale, over = load_scale(run), over_text(run.averaging)
     curves = [
         rrb.TimeSeriesView(
@@ -39,15 +45,30 @@ def blueprint(run: RunData) -> rrb.Blueprint:
         )
         for axis, label in (("fx", "Fx"), ("fz", "Fz"))
     ]
-    log = rrb.TextLogView(origin="/events", name="Events")
+    told = rrb.Tabs(
+        rrb.TextLogView(origin="/events", name="Events"), rrb.TextDocumentView(origin="/about", name="Lights")
+    )
+    ice = rrb.Vertical(rrb.Horizontal(above, _rubble_view(run)), flat, row_shares=[3, 2])
     return rrb.Blueprint(
-        rrb.Horizontal(
-            rrb.Vertical(above, below), rrb.Vertical(*curves, log, row_shares=[3, 3, 2]), column_shares=[3, 2]
-        ),
+        rrb.Horizontal(ice, rrb.Vertical(*curves, told, row_shares=[3, 3, 2]), column_shares=[3, 2]),
         rrb.TimePanel(timeline=TIMELINE, state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
     )
+
+
+def _plan_bounds(scene: Scene) -> tuple[float, float, float, float]:
+    """Around the structure: x from, to, then y from, to [m]."""
+    radius = scene.structure.half_width if np.isfinite(scene.structure.half_width) else 0.3 * scene.width
+    ahead = max(3.0 * radius, 15.0 * scene.thickness)
+    return -ahead, 1.3 * radius, -2.2 * radius, 2.2 * radius
+
+
+def _flat(origin: str, name: str, bounds: tuple[float, float, float, float]) -> Any:
+    """A view of lines; bounds are x from, to, then upwards from, to [m]."""
+    x0, x1, low, high = bounds
+    seen = rrb.VisualBounds2D(x_range=(x0, x1), y_range=(-high, -low))
+    return rrb.Spatial2DView(origin=f"/{origin}", name=name, background=(16, 24, 34), visual_bounds=seen)
 
 
 def _boundary(seconds: float) -> Any:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
-from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from cosim.recording import scenes, shapes
-from cosim.recording.decoding import Stored
-from coupling.interface import Array, IntArray, Phase
+from cosim.recording import shapes
+from cosim.recording.pictures import Picture
+from cosim.show.ice.scene import Scene
+from coupling.interface import Array, IntArray, Phase, SheetView
 
-TOPICS = ("/structure/scene", "/ice/nodes", "/ice/sheet", "/rubble/scene")
+TOWER_RGB, WATER_RGBA = (240, 240, 236), (70, 130, 170, 90)
+DRAWN = (Phase.ROTATING, Phase.SLIDING)  #: phases of blocks
 
 
 @dataclass(frozen=True)
@@ -26,67 +25,70 @@ class Mesh:
     vertices: Array  #: (v, 3) [m]
     faces: IntArray  #: (f, 3)
     normals: Array  #: (v, 3)
-    rgb: Array  #: (3,) or (v, 3), 0-255
+    rgb: Array  #: (3,) or (v, 3), 0-255; (4,) lets see through
 
 
-def meshes(stored: Iterable[Stored], thickness: float) -> Iterator[Mesh]:
-    """The meshes of a recording, in the order of time."""
-    quads = np.empty((0, 4), np.int64)
-    nodes = np.empty(0, scenes.NODE)
-    for topic, t_ns, data in stored:
-        if topic == "/ice/nodes":
-            nodes = node_records(data)
-        elif topic == "/ice/sheet":
-            quads = sheet_quads(data)
-        elif topic == "/structure/scene":
-            points, faces = triangle_lists(data)[0]
-            yield _flat("structure", t_ns, points, faces, shapes.STRUCTURE_RGB)
-        elif topic == "/rubble/scene":  # the last picture of a frame
-            yield _sheet(t_ns, nodes, quads, thickness)
-            for phase, item in zip((Phase.ROTATING, Phase.SLIDING), triangle_lists(data), strict=True):
-                yield _flat(f"rubble/{phase.name.lower()}", t_ns, *item, shapes.PHASE_RGB[phase])
+def meshes(picture: Picture, thickness: float) -> Iterator[Mesh]:
+    """The sheet, then the blocks by phase."""
+    yield sheet_mesh(picture.t_ns, picture.sheet, thickness)
+    points, faces, owner = shapes.prisms(picture.blocks)
+    for phase in DRAWN:
+        used, compact = np.unique(faces[picture.blocks.phase[owner] == phase], return_inverse=True)
+        name = f"rubble/{phase.name.lower()}"
+        yield flat_mesh(name, picture.t_ns, points[used], compact.reshape(-1, 3), shapes.PHASE_RGB[phase])
 
 
-def node_records(data: bytes) -> Any:
-    """Records of `cosim.recording.scenes.NODE` in a message of ``/ice/nodes``."""
-    return np.frombuffer(PointCloud.FromString(data).data, scenes.NODE)
-
-
-def triangle_lists(data: bytes) -> list[tuple[Array, IntArray]]:
-    """Points and triangles of every list of a scene."""
-    entity = SceneUpdate.FromString(data).entities[0]
-    return [
-        (
-            np.array([(p.x, p.y, p.z) for p in item.points]).reshape(-1, 3),
-            np.array(item.indices, np.int64).reshape(-1, 3),
+def still_meshes(structure: tuple[Array, IntArray], scene: Scene) -> Iterator[Mesh]:
+    """The structure, closed, with a tower that is drawn and not modelled, and the surface of the water."""
+    points, faces = structure
+    yield flat_mesh("structure", 0, points, faces, shapes.STRUCTURE_RGB)
+    if (tower := scene.tower()) is not None:
+        radius, low, high = tower
+        top = points[points[:, 2] > low - 1e-6 * max(1.0, abs(low))]
+        around = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+        if len(top):
+            lid = float(np.hypot(top[:, 0], top[:, 1]).max())
+            yield _disc("structure/lid", lid, low, shapes.STRUCTURE_RGB)
+        ring = radius * np.column_stack((np.cos(around), np.sin(around), np.zeros(48)))
+        body = np.concatenate([ring + np.array((0.0, 0.0, z)) for z in (low, high)])
+        k, following = np.arange(48), (np.arange(48) + 1) % 48
+        side = np.concatenate(
+            (np.column_stack((k, following, following + 48)), np.column_stack((k, following + 48, k + 48)))
         )
-        for item in entity.triangles
-    ]
+        yield flat_mesh("structure/tower", 0, body, side, TOWER_RGB)
+        yield _disc("structure/tower_top", radius, high, TOWER_RGB)
+    far = 1.5 * scene.width
+    corners = np.array([(-far, -far, 0.0), (far, -far, 0.0), (far, far, 0.0), (-far, far, 0.0)])
+    up = np.tile([0.0, 0.0, 1.0], (4, 1))
+    yield Mesh("water", 0, corners, np.array([(0, 1, 2), (0, 2, 3)]), up, np.array(WATER_RGBA, float))
 
 
-def sheet_quads(data: bytes) -> IntArray:
-    """The intact cells of a sheet's mesh: its first triangles are the top faces, (a, b, c) of all, then (a, c, d)."""
-    faces = np.array(SceneUpdate.FromString(data).entities[0].triangles[0].indices, np.int64).reshape(-1, 3)
-    k = _count_of_cells(faces)
-    return np.concatenate([faces[:k], faces[k : 2 * k, 2:]], axis=1)
+def _disc(name: str, radius: float, z: float, rgb: tuple[int, int, int]) -> Mesh:
+    """A round lid that faces up."""
+    around = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    rim = np.column_stack((radius * np.cos(around), radius * np.sin(around), np.full(48, z)))
+    k = np.arange(48)
+    faces = np.column_stack((k, (k + 1) % 48, np.full(48, 48)))
+    return flat_mesh(name, 0, np.concatenate((rim, [(0.0, 0.0, z)])), faces, rgb)
 
 
-def _count_of_cells(faces: IntArray) -> int:
-    """Number of top faces of the first half: the second half repeats their first corners."""
-    if not len(faces):
-        return 0
-    again = np.flatnonzero(faces[1:, 0] == faces[0, 0]) + 1
-    return int(again[0])
+def quads_of(sheet: SheetView) -> IntArray:
+    """(k, 4) nodes of the intact cells, seen from above counter-clockwise."""
+    return shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
 
 
-def _sheet(t_ns: int, nodes: Any, quads: IntArray, thickness: float) -> Mesh:
-    """The sheet where its nodes are now, with their colours; nodes that have left the lattice stay unused."""
-    n = int(max(quads.max(initial=0), nodes["node"].max(initial=0))) + 1
-    position, rgb = np.zeros((n, 3)), np.zeros((n, 3))
-    position[nodes["node"]] = np.stack([nodes["x"], nodes["y"], nodes["z"]], axis=1)
-    rgb[nodes["node"]] = np.stack([nodes["red"], nodes["green"], nodes["blue"]], axis=1)
-    vertices, faces, node = shapes.solid_sheet(position, quads, thickness)
-    return Mesh("sheet", t_ns, vertices, faces, _sheet_normals(vertices, n), _shade(rgb[node], n))
+def sheet_mesh(t_ns: int, sheet: SheetView, thickness: float) -> Mesh:
+    """The intact cells as a solid."""
+    n = len(sheet.position)
+    vertices, faces, node = shapes.solid_sheet(sheet.position, quads_of(sheet), thickness)
+    rgb = shapes.ice_colour(sheet.damage, sheet.utilisation)[node]
+    return Mesh("sheet", t_ns, vertices, faces, _sheet_normals(vertices, n), _shade(rgb, n))
+
+
+def flat_mesh(name: str, t_ns: int, points: Array, faces: IntArray, rgb: tuple[int, int, int]) -> Mesh:
+    """Triangles each with the normal of its own."""
+    vertices, normals = shapes.flat_shaded(points, faces)
+    return Mesh(name, t_ns, vertices, np.arange(len(vertices)).reshape(-1, 3), normals, np.array(rgb, float))
 
 
 def _sheet_normals(vertices: Array, n: int) -> Array:
@@ -106,8 +108,3 @@ def _shade(rgb: Array, n: int) -> Array:
     out = rgb.copy()
     out[2 * n :] *= 0.7
     return out
-
-
-def _flat(name: str, t_ns: int, points: Array, faces: IntArray, rgb: tuple[int, int, int]) -> Mesh:
-    vertices, normals = shapes.flat_shaded(points, faces)
-    return Mesh(name, t_ns, vertices, np.arange(len(vertices)).reshape(-1, 3), normals, np.array(rgb, float))

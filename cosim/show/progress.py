@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from cosim.observer import RunInfo
 from cosim.show.console import as_line, stderr
@@ -80,3 +82,16 @@ def all_event_lines(frame: Frame) -> list[str]:
         f"{e.t_ns / NS:10.4f} s  {e.kind}: {e.text} at x = {e.position[0]:.3g} m, y = {e.position[1]:.3g} m"
         for e in frame.events
     ]
+
+
+@contextmanager
+def counted(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar that is told how many of how many are done."""
+    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(compact=True))
+    with Progress(*columns, console=stderr, transient=True) as progress:
+        task = progress.add_task(what)
+
+        def told(done: int, of: int) -> None:
+            progress.update(task, completed=done, total=of)
+
+        yield told

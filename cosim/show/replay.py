@@ -1,11 +1,10 @@
 """`cosim replay`: a recording in rerun. Sheet, structure and blocks as solids, loads by phase, the log of events.
 
-Nothing is converted on disk: the recording is read and sent to a viewer, saved as .rrd, or photographed headless.
+Nothing is converted on disk: the recording is read and sent to a viewer, or saved as .rrd.
 """
 
 from __future__ import annotations
 
-import time
 import webbrowser
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,19 +13,24 @@ from typing import Any
 
 import numpy as np
 import rerun as rr
-from google.protobuf.message import DecodeError
 from rerun.components import AggregationPolicy
 
+from cosim.analysis.lights import trust, trust_lines
 from cosim.analysis.run_data import RunData
-from cosim.errors import FailedError, InputError
+from cosim.errors import FailedError
 from cosim.outputs import whole
 from cosim.recording import shapes
-from cosim.recording.reader import messages
+from cosim.recording.pictures import Picture
+from cosim.recording.reader import recorded_pictures, recorded_structure
 from cosim.show import pictures
 from cosim.show.console import print_line
+from cosim.show.ice.history import busiest
+from cosim.show.ice.scene import Scene, scene_of
+from cosim.show.ice.strips import FORCE_RGB, Strips, moving_strips, still_strips
 from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
-from cosim.show.viewer import headless_viewer, screen_viewer, wait_until_loaded, web_viewer
+from cosim.show.pictures import still_meshes
+from cosim.show.viewer import screen_viewer, web_viewer
 from coupling.interface import NS, PHASES, Phase
 
 APPLICATION = "cosim"
@@ -38,9 +42,9 @@ def save(recording: Path, out: Path) -> None:
     run = opened(recording)
     with whole(out, ".rrd") as part:
         try:
-            with _stream() as stream:
-                stream.save(part, default_blueprint=blueprint(run))
-                send(stream, recording, run)
+            with stream() as sink:
+                sink.save(part, default_blueprint=blueprint(run))
+                send(sink, recording, run)
         except RuntimeError as error:  # rerun's only one
             raise FailedError(f"{out}: {error}; free space or write elsewhere") from error
 
@@ -48,18 +52,18 @@ def save(recording: Path, out: Path) -> None:
 def open_viewer(recording: Path) -> None:
     """Open the viewer on this machine's screen."""
     run = opened(recording)
-    with screen_viewer() as url, _stream() as stream:
-        stream.connect_grpc(url, default_blueprint=blueprint(run))
-        send(stream, recording, run)
+    with screen_viewer() as url, stream() as sink:
+        sink.connect_grpc(url, default_blueprint=blueprint(run))
+        send(sink, recording, run)
 
 
 def serve(recording: Path, port: int | None = None, browser: bool = True) -> None:
     """Serve viewer and data to a browser on this machine, until interrupted."""
     run = opened(recording)
     with web_viewer(port) as (url, page, process):
-        with _stream() as stream:
-            stream.connect_grpc(url, default_blueprint=blueprint(run))
-            send(stream, recording, run)
+        with stream() as sink:
+            sink.connect_grpc(url, default_blueprint=blueprint(run))
+            send(sink, recording, run)
         print_line(page)
         print_line("this machine only; Ctrl-C ends it")
         if browser:
@@ -68,53 +72,68 @@ def serve(recording: Path, port: int | None = None, browser: bool = True) -> Non
     raise FailedError(f"the viewer ended by itself (exit code {code}); try again, or save a .rrd with --save")
 
 
-def screenshot(
-    recording: Path, out: Path, at: float | None = None, size: tuple[int, int] = (1800, 1050), fade: float = 6.0
-) -> list[str]:
-    """Write a picture at a simulated time [s], default the end; returns what the views complain about.
-
-    ``fade`` [s] of wall time lets the viewer's start-up notices fade, which else cover part of the picture.
-    """
-    run = opened(recording)
-    at = float(run.t[-1]) if at is None else at
-    if not 0 <= at <= run.t[-1]:
-        raise InputError(f"--time {at:g}: outside of the run; give 0 to {run.t[-1]:g} s")
-    with headless_viewer(size) as (url, client):
-        with _stream() as stream:
-            stream.connect_grpc(url, default_blueprint=blueprint(run))
-            send(stream, recording, run)
-        wait_until_loaded(client, run)
-        client.set_time(TIMELINE, duration=at, play_state="paused")
-        time.sleep(fade)
-        out.write_bytes(client.take_screenshot())
-        return [str(report) for view in client.get_state().views for report in view.reports]
-
-
-def send(stream: rr.RecordingStream, recording: Path, run: RunData) -> None:
-    """All of a run: pictures of the recorded frames, loads of every window, events."""
-    _send_loads(stream, run)
+def send(sink: rr.RecordingStream, recording: Path, run: RunData) -> None:
+    """All of a run: pictures of the recorded frames, sections, plan, loads of every window, events, lights."""
+    _send_loads(sink, run)
+    sink.log("about", rr.TextDocument(about(run), media_type="text/markdown"), static=True)
     for event in run.events:
-        stream.set_time(TIMELINE, duration=event.t_ns / NS)
-        stream.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
-    for mesh in _meshes(recording, run):
-        stream.set_time(TIMELINE, duration=mesh.t_ns / NS)
-        stream.log(f"world/{mesh.name}", _mesh(mesh), static=mesh.name == "structure")
-    stream.flush()
+        sink.set_time(TIMELINE, duration=event.t_ns / NS)
+        sink.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
+    scene, section = scene_of(run), shown_section(run, recording)
+    for mesh in still_meshes(recorded_structure(recording), scene):
+        sink.log(f"world/{mesh.name}", _mesh(mesh), static=True)
+    for strips in still_strips(scene, section):
+        sink.log(strips.name, _strips(strips), static=True)
+    for picture in recorded_pictures(recording):
+        sink.set_time(TIMELINE, duration=picture.t_ns / NS)
+        for mesh in pictures.meshes(picture, scene.thickness):
+            sink.log(f"world/{mesh.name}", _mesh(mesh))
+        for strips in moving_strips(scene, picture, section):
+            sink.log(strips.name, _strips(strips))
+        sink.log("world/load", _arrow(picture, scene))
+    sink.flush()
 
 
-def _meshes(recording: Path, run: RunData) -> Iterator[pictures.Mesh]:
-    stored = messages(recording, pictures.TOPICS)
-    try:
-        yield from pictures.meshes(stored, float(run.metadata["thickness_m"]))
-    except (DecodeError, ValueError, IndexError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(
-            f"{recording}: a picture in it cannot be read: {error}; give a file that `cosim run` wrote"
-        ) from None
+def shown_section(run: RunData, recording: Path) -> int:
+    """The section that bears most when the load is largest."""
+    if not len(run.t_ns):
+        return 0
+    peak, found = int(run.t_ns[int(run.lasting.component("f").argmax())]), None
+    for picture in recorded_pictures(recording):
+        if found is None or picture.t_ns <= peak:
+            found = picture
+    return scene_of(run).section_at(0.0 if found is None else busiest(found))
 
 
-def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
+def _strips(strips: Strips) -> Any:
+    if not strips.lines:
+        return rr.Clear(recursive=False)
+    radii = rr.Radius.ui_points(0.5 * strips.width)
+    return rr.LineStrips2D(strips.lines, colors=strips.rgb, radii=radii)
+
+
+def _arrow(picture: Picture, scene: Scene) -> Any:
+    """The load, its tip at the point of attack."""
+    total = picture.forces.force.sum(axis=0)
+    size = float(np.linalg.norm(total))
+    if size == 0.0:
+        return rr.Clear(recursive=False)
+    weight = np.linalg.norm(picture.forces.force, axis=1)
+    vector = total / size * 6.0 * scene.thickness
+    at = weight @ picture.forces.position / weight.sum()
+    return rr.Arrows3D(origins=[at - vector], vectors=[vector], colors=[FORCE_RGB], radii=0.12 * scene.thickness)
+
+
+def about(run: RunData) -> str:
+    """What is seen, and how far it can be trusted, as Markdown."""
+    lines = "\n".join(f"* {line}" for line in trust_lines(trust(run)))
+    return (
+        f"# {run.metadata['title']}\n\n{lines}\n\n* sheet: pale to red as its utilisation goes to 1, dark where it is "
+        "cracked\n* blocks: orange rotate, green slide\n* pink: the load at its point of attack\n"
+    )
+
+
+def _send_loads(sink: rr.RecordingStream, run: RunData) -> None:
     # curves are drawn in the order of their paths: the total first, so that it hides no phase
     series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
     run = run.lasting
@@ -126,15 +145,15 @@ def _send_loads(stream: rr.RecordingStream, run: RunData) -> None:
             width = 3.5 if phase is None else 1.6
             # no aggregation: the viewer would draw means over what falls on one pixel, and the peak would be lower
             line = rr.SeriesLines(names=name, colors=rgb, widths=width, aggregation_policy=AggregationPolicy.Off)
-            stream.log(path, line, static=True)
+            sink.log(path, line, static=True)
             values = rr.Scalars.columns(scalars=run.component(axis, phase) / scale.size)
-            stream.send_columns(path, indexes=[index], columns=values)
+            sink.send_columns(path, indexes=[index], columns=values)
 
 
 def _mesh(mesh: pictures.Mesh) -> Any:
     if not len(mesh.faces):
         return rr.Clear(recursive=False)
-    rgb = np.broadcast_to(mesh.rgb, mesh.vertices.shape).astype(np.uint8)
+    rgb = np.broadcast_to(mesh.rgb, (len(mesh.vertices), mesh.rgb.shape[-1])).astype(np.uint8)
     return rr.Mesh3D(
         vertex_positions=mesh.vertices.astype(np.float32),
         triangle_indices=mesh.faces,
@@ -148,9 +167,10 @@ def _level(kind: str) -> str:
 
 
 @contextmanager
-def _stream() -> Iterator[rr.RecordingStream]:
-    stream = rr.RecordingStream(APPLICATION)
+def stream() -> Iterator[rr.RecordingStream]:
+    """Where a run is sent to; let go of on the way out."""
+    sink = rr.RecordingStream(APPLICATION)
     try:
-        yield stream
+        yield sink
     finally:
-        stream.disconnect()
+        sink.disconnect()

@@ -17,8 +17,8 @@ from cosim.study.variants import Variant
 from coupling.interface import PHASES
 
 if TYPE_CHECKING:
-    from cosim.run import RunResult
     from cosim.scenario.scenario import Scenario
+    from cosim.simulation import RunResult
 
 Row = dict[str, Any]
 COMPONENTS = ("fx", "fz", "f")
@@ -59,9 +59,9 @@ class Study:
 def run_variant(study: Study, number: int, variant: Variant) -> Row:
     """Simulate one variant; what goes wrong becomes ``error``, one line."""
     from cosim.errors import explain
-    from cosim.run import run_scenario
     from cosim.scenario.cost import cost_of, too_large
     from cosim.scenario.loading import checked
+    from cosim.simulation import run_scenario
 
     try:
         scenario = checked(study.written, (*study.overrides, *variant.overrides))
@@ -85,7 +85,7 @@ def _recorded(scenario: Scenario, path: Path) -> RunResult:
     """A run with its recording, which tells how it ended; one that is there from an earlier try is written over."""
     from cosim.errors import explain
     from cosim.recording.writer import Recorder
-    from cosim.run import run_scenario
+    from cosim.simulation import run_scenario
 
     recorder = Recorder(path, force=True)
     try:

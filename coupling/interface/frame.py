@@ -20,4 +20,4 @@ class Frame:
     events: tuple[Event, ...] = ()
     ledger: dict[str, float] = field(default_factory=dict)  #: named balances of `coupling.ledger` [SI]
     budget: dict[str, float] = field(default_factory=dict)  #: what carries the load, see `coupling.budget` [N]
-    contact: ContactForces = field(default_factory=ContactForces.none)  #: load of the phase breaking, node by node
+    contact: ContactForces = field(default_factory=ContactForces.none)  #: load of the sheet, node by node

@@ -90,16 +90,17 @@ class SheetView:
 
 @dataclass(frozen=True, slots=True)
 class ContactForces:
-    """The structure on the sheet's edge, node by node: their sum is minus the load of the phase breaking."""
+    """The structure on the sheet's edge, node by node: their sum is minus the load of the sheet."""
 
     nodes: IntArray  #: (m,) node numbers of the edge, also of those that touch nothing or have left in the window
     position: Array  #: (m, 3) where each force acts, at the end of the window [m]
     force: Array  #: (m, 3) mean over the window, on the sheet [N]
+    hinged: BoolArray  #: (m,) node of a hinged piece: its load counts as rotating
 
     @classmethod
     def none(cls) -> ContactForces:
         """An edge that touches nothing."""
-        return cls(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)))
+        return cls(np.empty(0, np.int64), np.empty((0, 3)), np.empty((0, 3)), np.empty(0, bool))
 
 
 @dataclass

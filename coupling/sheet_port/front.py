@@ -66,7 +66,7 @@ class Front:
         height[: len(c.nodes)], lead[: len(c.nodes)] = c.height, c.lead
         at = self._motion.points(nodes, Lever(height, lead))
         at[:, 1] += self._aside(nodes)
-        return ContactForces(nodes, at, out.contact_mean)
+        return ContactForces(nodes, at, out.contact_mean, np.zeros(len(nodes), bool))
 
     def _aside(self, nodes: IntArray) -> Array:
         """How far the middle of their ice is from nodes along y, (n,) [m]."""

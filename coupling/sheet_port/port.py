@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -34,7 +35,6 @@ from coupling.sheet_port.motion import Motion
 from coupling.sheet_port.underside import Underside
 from coupling.sheet_port.view import view
 from coupling.sheet_port.watch import Watch
-from lattice.cracks.hinges import Hinges
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
 from lattice.loads import NodeLoad
@@ -114,6 +114,7 @@ class SheetPort:
         contact = self.front.forces(out)
         self.front.crush()
         hinges = self.sheet.hinges
+        contact = replace(contact, hinged=hinges.hinged[contact.nodes])
         events = self.watch.window(out, parts, self._leaving.pieces, load, rubble_load)
         events += self.watch.cracks(hinges, load + rubble_load)
         r = out.reaction
@@ -125,9 +126,7 @@ class SheetPort:
             "staggering": r.applied.get(RUBBLE, (0.0, 0.0)),
         }
         others = {name: pair for name, pair in r.applied.items() if name != RUBBLE}
-        return SheetReport(
-            load, self._leaving.late(self.motion.t), events, budget, others, contact, _hinged(contact, hinges)
-        )
+        return SheetReport(load, self._leaving.late(self.motion.t), events, budget, others, contact, _hinged(contact))
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""
@@ -221,7 +220,6 @@ class SheetPort:
         return view(self.sheet, self.motion)
 
 
-def _hinged(contact: ContactForces, hinges: Hinges) -> Array | None:
+def _hinged(contact: ContactForces) -> Array | None:
     """Load that hinged pieces give, (3,) [N]; None if there are none."""
-    on = hinges.hinged[contact.nodes]
-    return -contact.force[on].sum(axis=0) if on.any() else None
+    return -contact.force[contact.hinged].sum(axis=0) if contact.hinged.any() else None

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cosim.build import build_attack
 from cosim.observer import RunInfo
 from cosim.scenario.scenario import Scenario
 from coupling.interface import BlockTable, Event, Frame, Phase, SheetView
@@ -32,7 +33,13 @@ def cone(radius: float = 15.0, neck: float = 9.0, top: float = 5.0, toe: float =
 
 def run_info(scenario: Scenario) -> RunInfo:
     return RunInfo(
-        scenario, cone(), tuple(scenario.sheet.nodes), scenario.sheet.spacing, scenario.duration_ns, scenario.window_ns
+        scenario,
+        cone(),
+        tuple(scenario.sheet.nodes),
+        scenario.sheet.spacing,
+        scenario.duration_ns,
+        scenario.window_ns,
+        attack=build_attack(scenario),
     )
 
 
@@ -110,7 +117,7 @@ def blocks(scenario: Scenario, t: float) -> BlockTable:
     zero = np.zeros((n, 3))
     return BlockTable(
         np.arange(n),
-        np.repeat(np.arange(9), 2),
+        np.rint((np.array(centre)[:, 1] + scenario.sheet.axis) / scenario.sheet.spacing).astype(np.int64),
         np.array(phase, np.int64),
         np.full(n, 7 * h * 5.2 * 846),
         np.full(n, 5.2),

@@ -7,8 +7,8 @@ import pytest
 from cosim.build import build
 from cosim.errors import InputError
 from cosim.ice.broken import as_table, broken, cell_damage, directions
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from lattice.grid import Grid
 
 GRID = Grid(25, 19, 1.5)  # 36 m x 27 m

@@ -1,17 +1,18 @@
 """Bytes packed from arrays are what the official protobuf classes read."""
 
+import math
+
 import numpy as np
 import pytest
 from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from cosim.recording import messages, numbers, scenes, shapes, views
+from cosim.recording import messages, numbers, pictures, scenes, shapes, views
 from cosim.recording.channels import CHANNELS, Channel, When
 from cosim.recording.reader import messages as stored
 from cosim.recording.reader import read_run
 from cosim.scenario.loading import load_scenario
-from cosim.show import pictures
-from coupling.interface import BlockTable, Event, Frame, SheetView
+from coupling.interface import BlockTable, ContactForces, Event, Frame, SheetView
 
 
 @pytest.fixture(scope="module")
@@ -34,11 +35,11 @@ def test_triangles_are_read_back_bit_by_bit():
 
 def test_nested_messages_are_set_also_at_zero(scenario, synthetic):
     """rerun turns an unset nested message into a null."""
-    (entity,) = SceneUpdate.FromString(views.prisms(0, BlockTable.empty())).entities
+    (entity,) = SceneUpdate.FromString(views.prisms(0, BlockTable.empty(), 3.0)).entities
     assert entity.HasField("timestamp")
     assert entity.HasField("lifetime")
     assert all(item.HasField("pose") and item.HasField("color") for item in entity.triangles)
-    cloud = PointCloud.FromString(views.nodes(0, synthetic.sheet(scenario, 0.0)))
+    cloud = PointCloud.FromString(views.nodes(0, synthetic.sheet(scenario, 0.0), 3.0))
     assert cloud.HasField("timestamp")
     assert cloud.HasField("pose")
     assert cloud.pose.HasField("position")
@@ -50,12 +51,34 @@ def window(t_ns, **content):
     return Frame(t_ns, none, BlockTable.empty(), **{"load": np.zeros((3, 3)), **content})
 
 
-def test_load_holds_totals_and_phases():
-    data = numbers.load(None, window(2_000_000_001, load=np.arange(9.0).reshape(3, 3) + 1))
+def test_load_holds_totals_and_phases(scenario, synthetic):
+    info = synthetic.run_info(scenario)
+    data = numbers.load(info, window(2_000_000_001, load=np.arange(9.0).reshape(3, 3) + 1))
     message = messages.Load.FromString(data)
     assert (message.stamp.seconds, message.stamp.nanos) == (2, 1)
     assert (message.fx, message.fy, message.fz) == (12.0, 15.0, 18.0)
     assert (message.breaking_fx, message.rotating_fy, message.sliding_fz) == (1.0, 5.0, 9.0)
+    assert math.isnan(message.attack_x)  # no force has a place
+
+
+def test_forces_at_their_places_and_their_moments(scenario, synthetic):
+    """Two forces of the sheet, one of them of a hinged piece: their places, their moments, the centre of both."""
+    info = synthetic.run_info(
+        load_scenario("van_vliet_2018_floe_165m", ['recording.moment_point=["0 m","0 m","-2 m"]'])
+    )
+    places, forces = np.array([[-15.0, 1.0, 0.5], [-14.0, -3.0, -0.5]]), np.array([[2.0, 0.0, 1.0], [6.0, 0.5, 0.0]])
+    touching = ContactForces(np.array([4, 7]), places, -forces, np.array([False, True]))
+    frame = window(10**9, contact=touching)
+    message = messages.Contact.FromString(pictures.contact(info, frame))
+    assert np.allclose(np.array([message.x, message.y, message.z]).T, places, atol=2e-3)
+    assert np.allclose(np.array([message.fx, message.fy, message.fz]).T, forces, rtol=3e-4)
+    assert (list(message.phase), list(message.block)) == ([0, 1], [-1, -1])
+    load = messages.Load.FromString(numbers.load(info, frame))
+    arms = np.cross(places - info.scenario.moment_point, forces)
+    assert (load.breaking_my, load.rotating_mz) == pytest.approx((arms[0, 1], arms[1, 2]), rel=1e-12)
+    assert (load.mx, load.my, load.mz) == pytest.approx(tuple(arms.sum(axis=0)), rel=1e-12)
+    size = np.linalg.norm(forces, axis=1)
+    assert (load.attack_x, load.attack_y) == pytest.approx(tuple((size @ places)[:2] / size.sum()), rel=1e-12)
 
 
 def test_an_event_is_data_and_a_line():
@@ -84,19 +107,19 @@ def test_a_channel_from_outside_is_one_line(monkeypatch, record, tmp_path):
     run = read_run(path)
     assert found == list(zip(run.t_ns.tolist(), (5.0 * run.component("fx")).tolist(), strict=True))
     assert len(found) == 240
-    assert list(stored(path, ["/load/structure", "/ice/nodes"])) == list(
-        stored(plain, ["/load/structure", "/ice/nodes"])
+    assert list(stored(path, ["/load/structure", "/ice/sheet"])) == list(
+        stored(plain, ["/load/structure", "/ice/sheet"])
     )
 
 
 @pytest.mark.parametrize(
-    ("when", "item"), [(When.START, None), (When.EVENT, Event), (When.PICTURE, Frame), (When.MESH, Frame)]
+    ("when", "item"), [(When.START, None), (When.EVENT, Event), (When.PICTURE, Frame), (When.VIEW, Frame)]
 )
 def test_a_channel_is_asked_when_it_is_due(record, tmp_path, when, item):
     seen = []
     own = {**CHANNELS, "/mine": Channel(messages.Ledger, when, lambda info, *what: seen.append(what))}
     path = record(tmp_path / "run.mcap", channels=own)
-    like = {When.START: "/tf", When.EVENT: "/events", When.PICTURE: "/ice/nodes", When.MESH: "/ice/sheet"}[when]
+    like = {When.START: "/tf", When.EVENT: "/events", When.PICTURE: "/ice/sheet", When.VIEW: "/view/sheet"}[when]
     assert len(seen) == len(list(stored(path, [like])))
     assert all(isinstance(what, item) for (what,) in seen) if item else seen == [()]
     assert not list(stored(path, ["/mine"]))  # it had nothing to say
@@ -104,18 +127,11 @@ def test_a_channel_is_asked_when_it_is_due(record, tmp_path, when, item):
 
 def test_nodes_that_left_the_lattice_are_not_drawn(scenario, synthetic):
     sheet = synthetic.sheet(scenario, 8.0)
-    records = pictures.node_records(views.nodes(0, sheet))
+    cloud = PointCloud.FromString(views.nodes(0, sheet, 3.0))
+    records = np.frombuffer(cloud.data, scenes.NODE)
     assert len(records) == sheet.present.sum() < len(sheet.present)
-    assert np.allclose(records["x"], sheet.position[records["node"], 0], rtol=1e-6)
-    assert np.array_equal(records["damage"], sheet.damage[sheet.present].astype("f4"))
-
-
-def test_the_mesh_of_the_sheet_gives_its_cells_back(scenario, synthetic):
-    sheet = synthetic.sheet(scenario, 8.0)
-    quads = pictures.sheet_quads(views.sheet_solid(0, sheet, 3.0))
-    assert len(quads) == sheet.intact.sum()
-    expected = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
-    assert np.array_equal(quads, expected)
+    assert np.allclose(records["x"], sheet.position[records["node"], 0], atol=0.5 * 3.0 / views.FINE)
+    assert np.allclose(records["damage"], sheet.damage[sheet.present], atol=0.5 / views.FINE)
 
 
 def closed_volume(points, faces):
@@ -152,11 +168,9 @@ def test_outline_points_lie_on_the_blocks_and_are_dense(scenario, synthetic):
 def test_no_blocks_and_no_cells_are_pictures_too(scenario, synthetic):
     empty = BlockTable.empty()
     assert len(shapes.prisms(empty)[0]) == 0
-    assert views.outline(0, empty, 0.5)
+    assert views.outline(0, empty, 3.0)
     vertices, faces, _ = shapes.solid_sheet(np.zeros((9, 3)), np.empty((0, 4), np.int64), 3.0)
     assert (len(vertices), len(faces)) == (18, 0)
-    gone = pictures.sheet_quads(scenes.scene(0, "sheet", [scenes.triangle_list(vertices, faces, np.zeros((18, 3)))]))
-    assert gone.shape == (0, 4)
 
 
 def test_colours_go_from_ice_to_red():

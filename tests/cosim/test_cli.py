@@ -141,9 +141,9 @@ def fake_run(monkeypatch, synthetic):
                 "recording": None,
             }
 
-        module = types.ModuleType("cosim.run")
+        module = types.ModuleType("cosim.simulation")
         module.run_scenario = run_scenario
-        monkeypatch.setitem(sys.modules, "cosim.run", module)
+        monkeypatch.setitem(sys.modules, "cosim.simulation", module)
 
     return install
 

@@ -8,11 +8,11 @@ from cosim.analysis.run_data import RunData
 from cosim.build import build
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
-from cosim.run import run_scenario
 from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
 from cosim.show.report import content
 from cosim.show.tables import ledger_lines
+from cosim.simulation import run_scenario
 
 CASE = "van_vliet_2018_floe_55m_centre"
 SHORT = (

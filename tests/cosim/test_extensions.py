@@ -11,9 +11,9 @@ from cosim.build import build
 from cosim.loads import LOADS
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
-from cosim.run import run_scenario
 from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from cosim.structures import KINDS, Kind
 from coupling.contact import CONTACTS, OverlapContact
 from coupling.schemes import SCHEMES, Iteration

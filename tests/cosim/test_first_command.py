@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from cosim.run import run_scenario
 from cosim.scenario.cost import cost_of
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text("utf-8")
@@ -34,5 +34,5 @@ def test_the_picture_is_that_of_the_case(scenario):
     shown = re.search(r"^!\[.*?\]\((\S+)\)", README, re.M)[1]
     assert (ROOT / shown).parent == scenario.folder
     assert (ROOT / shown).is_file()
-    at = float(re.search(r"--screenshot picture\.png --time (\d+)", README)[1])
+    at = float(re.search(r"--screenshot picture\.png --at (\d+)", README)[1])
     assert 0.0 < at <= scenario.duration_ns / 1e9

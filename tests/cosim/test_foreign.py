@@ -125,7 +125,7 @@ def twice(record):
         (attachment(name="else.toml"), "reference.toml in it is missing"),
         (without(Metadata, "run"), "not a recording of cosim"),
         (twice, "its metadata stand there twice"),
-        (meta(format="1"), "format 1 of version 0.1.0, this version reads 2; use that version, or run"),
+        (meta(format="1"), "format 1 of version 0.1.0, this version reads 3; use that version, or run"),
         (meta(format=None), "format None"),
         (meta(duration_ns="soon"), "metadata duration_ns = 'soon' cannot be"),
         (meta(nodes="[40]"), "metadata nodes = '[40]' cannot be"),
@@ -152,7 +152,7 @@ def spoiled(content):
     """The pictures of the nodes hold something else."""
 
     def change(record):
-        if isinstance(record, Channel) and record.topic == "/ice/nodes":
+        if isinstance(record, Channel) and record.topic == "/ice/sheet":
             spoiled.channel = record.id
         if isinstance(record, Message) and record.channel_id == spoiled.channel:
             record.data = content

@@ -10,8 +10,8 @@ from cosim.analysis import lights
 from cosim.analysis.run_data import RunData
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from coupling.interface import Event, SimulationError
 
 N = 400

@@ -9,8 +9,8 @@ import pytest
 
 from cosim.analysis.lights import trust
 from cosim.baselines.methods import design_loads
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 
 #: breaking, slope [deg], diameter at the waterline [m], thickness [m]
 CASES = {

@@ -11,10 +11,10 @@ from cosim.analysis.sustained import averaging_time
 from cosim.recording.metadata import fault
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario, read_scenario
 from cosim.show.figures import draw_loads
 from cosim.show.report import content, write_report
+from cosim.simulation import run_scenario
 from cosim.study.task import Study, run_variant
 from cosim.study.variants import Variant
 

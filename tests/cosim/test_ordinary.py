@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim.run import run_scenario
 from cosim.scenario.judge import doubts_of
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 
 spec = importlib.util.spec_from_file_location("ordinary", Path(__file__).with_name("ordinary.py"))
 cases = importlib.util.module_from_spec(spec)

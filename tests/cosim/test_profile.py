@@ -6,9 +6,9 @@ import pytest
 
 from cosim.baselines.inputs import given
 from cosim.build import build_structure
-from cosim.run import run_scenario
 from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 
 CASE = "van_vliet_2018_floe_55m_centre"
 CONE = [["-20 m", "9 m"], ["-6 m", "9 m"], ["5 m", "20 m"]]  # the case's own: 45 deg, 15 m at the waterline, neck 9 m

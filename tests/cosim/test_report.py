@@ -1,16 +1,21 @@
 """The HTML page of a run: complete, self-contained, and right about the shares at the peak."""
 
 import dataclasses
+import json
+import re
 
 import numpy as np
 import pytest
 
 from cosim.analysis.peaks import shares_at_peak
 from cosim.analysis.run_data import RunData
-from cosim.run import run_scenario
+from cosim.recording.reader import read_run
 from cosim.scenario.loading import load_scenario
 from cosim.show.figures import ENERGY
+from cosim.show.page.numbers import curve_data, statistics
+from cosim.show.page.parameters import sources
 from cosim.show.report import content, write_report
+from cosim.simulation import run_scenario
 from coupling.budget import TERMS
 from coupling.energy import STORES
 from coupling.interface import Event
@@ -86,12 +91,21 @@ def test_the_budget_stands_at_the_peaks_before_a_failure_and_in_a_figure(run):
     shown = content(dataclasses.replace(run, budget=terms, events=(broken, broken)))
     assert len(shown["figures"]) == 4
     assert shown["bound"]["fx"] == pytest.approx(1e-6)
-    table = {(r["when"], r["component"]): r for r in shown["budget"]}
-    assert len(table) == len(shown["budget"]) == 8  # two peaks, one failure, the mean; each with Fx and Fz
-    assert table["peak of Fx", "Fx"]["terms"]["held"] == pytest.approx(8e6, abs=10.0)
-    assert table["before failure", "Fx"]["time"] == "0.10"
-    assert table["before failure", "Fx"]["total"] == pytest.approx(3e6)
-    assert table["mean", "Fz"]["terms"]["flooded rubble"] == pytest.approx(1e6)
+    fz, fx = shown["budget"]["parts"]
+    assert shown["budget"]["unit"] == "MN"
+    assert fx["head"] == [
+        "Fx [MN]",
+        "peak of Fz\n0.05 s",
+        "peak of Fx\n0.15 s",
+        "before failure\n0.10 s",
+        "mean\nall windows",
+        "is",
+    ]
+    rows = {row[0]: row[1:] for row in fx["rows"]}
+    assert rows["total"][1:3] == ("8.00", "3.00")
+    assert rows["held"][1] == "8.00"
+    assert dict((row[0], row[4]) for row in fz["rows"])["flooded rubble"] == "1.00"
+    assert all(row[-1] != "" for part in (fz, fx) for row in part["rows"])  # every term is explained
 
 
 def test_the_page_is_self_contained(run, tmp_path):
@@ -141,3 +155,76 @@ def test_a_run_without_energy_books_has_no_energy_figure(run):
         "Load on the structure by phase",
         "Ice that has left the sheet",
     ]
+
+
+@pytest.fixture(scope="module")
+def whole_page(run_file, cosim_module, tmp_path_factory):
+    """The page of a recording with pictures, as the command writes it."""
+    out = tmp_path_factory.mktemp("page") / "r.html"
+    cosim_module("report", run_file, "-o", out)
+    return out.read_text("utf-8")
+
+
+@pytest.fixture(scope="module")
+def cosim_module():
+    from cosim.cli import main
+
+    def call(*arguments):
+        with pytest.raises(SystemExit) as stop:
+            main([str(a) for a in arguments])
+        assert stop.value.code == 0
+
+    return call
+
+
+def test_the_page_shows_the_ice_and_stands_alone(whole_page):
+    for anchor in ("asked", "answer", "ice", "curves", "statistics", "moments", "formulas", "events", "parameters"):
+        assert f'id="{anchor}"' in whole_page, anchor
+    assert whole_page.startswith("<!doctype html>")
+    assert "http" not in whole_page.split("<h2 id=")[0]
+    assert re.findall(r'(?:src|href)="(?!data:|#)', whole_page) == []
+    assert "@media print" in whole_page
+    titles = re.findall(r"<figcaption>(.*?)</figcaption>", whole_page)
+    assert {"Load along the waterline, by place across the drift", "Load on the structure by phase"} <= set(titles)
+    assert any("most load by breaking" in title.lower() for title in titles)
+
+
+def test_parameters_have_their_sources(whole_page):
+    rows = dict(
+        re.findall(r'<td class="text">([\w.]+)</td><td class="text">(.*?)</td><td class="text quiet">', whole_page)
+    )
+    assert rows["ice.thickness"] == "3 m"
+    assert rows["sheet.nodes"] == "[40, 40]"
+    sources = dict(re.findall(r'<td class="text">([\w.]+)</td>.*?<td class="text quiet">(.*?)</td>', whole_page))
+    assert "thesis" in sources["ice.thickness"]
+    assert sources["sheet.nodes"] == "set by the user of this run"
+    assert sources["rubble.added_mass"]
+
+
+def test_curves_that_can_be_enlarged_hold_the_peak(run_file, whole_page):
+    data = json.loads(re.search(r'id="data">(.*?)</script>', whole_page)[1])
+    run = read_run(run_file)
+    size = {"MN": 1e6, "kN": 1e3}[data["unit"]]
+    for axis in ("fx", "fz"):
+        peak = np.abs(run.lasting.component(axis)).max()
+        assert max(map(abs, data["series"][axis]["total"])) * size == pytest.approx(peak, rel=1e-4)
+        phases = np.array([data["series"][axis][p] for p in ("breaking", "rotating", "sliding")])
+        assert phases.sum(axis=0) == pytest.approx(data["series"][axis]["total"], abs=1e-3)
+    assert {e["kind"] for e in data["events"]} == {"split", "circumferential"}
+    few = curve_data(run, most=20)
+    assert len(few["t"]) == 20
+    assert max(map(abs, few["series"]["fx"]["total"])) == max(map(abs, data["series"]["fx"]["total"]))
+
+
+def test_comments_of_a_scenario_are_its_sources():
+    text = '[ice]\nthickness = "3 m"  # Table 1\nnu = 0.3\n[ice.beam_test]\nlength = "1 m"  # a # b\n'
+    text += "[ice]\nnu = 0.2 # late"
+    assert dict(sources(text)) == {"ice.thickness": "Table 1", "ice.nu": "late", "ice.beam_test.length": "a # b"}
+
+
+def test_statistics_are_those_of_the_means(run):
+    found = statistics(run)
+    assert found["head"][0] == "load [MN]"
+    fx = next(row for row in found["rows"] if row[0] == "Fx")
+    assert float(fx[1]) == pytest.approx(run.lasting.component("fx").mean() / 1e6, abs=0.01)
+    assert float(fx[-1]) == pytest.approx(8.0)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from coupling.contact import CONTACTS, CrushingContact
 from coupling.energy import SOURCES, STORES, residual_of
 from coupling.interface import SimulationError

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from cosim.build import build, build_structure
-from cosim.run import run_scenario
 from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from coupling.interface import Phase
 from coupling.rubble_port import OUTLINE_TOLERANCE
 from coupling.structure import cone, plane_slope

@@ -9,9 +9,9 @@ from scipy import stats
 from cosim.build import build
 from cosim.errors import InputError
 from cosim.ice.fields import drawn, from_file, gaussian, middles, seed_of, varied, weibull_shape
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
 from cosim.scenario.variation import FieldSection
+from cosim.simulation import run_scenario
 from lattice.grid import Grid
 
 GRID = Grid(41, 31, 2.0)  # 80 m x 60 m

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cosim.build import build
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from coupling.budget import AXES, TERMS
 from coupling.energy import LOAD_WORK, SOURCES, STORES, residual_of
 from lattice.tops import NAMES

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cosim.run import run_scenario
 from cosim.scenario.loading import load_scenario
+from cosim.simulation import run_scenario
 from coupling.contact import CONTACTS, CrushingContact
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

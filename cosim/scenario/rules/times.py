@@ -7,7 +7,6 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from cosim.scenario.chosen import marches
 from cosim.scenario.section import fault
 
 Faults = Iterator[PydanticCustomError]
@@ -16,7 +15,7 @@ MOST_WINDOWS = 10_000_000  #: of a run
 
 def lockstep_marches(m: Any) -> Faults:
     """Steps of the implicit engine are as long as windows."""
-    if m.coupling.scheme == "lockstep" and not marches(m):
+    if m.coupling.scheme == "lockstep" and not m.fracture.marches:
         yield fault(
             "coupling.scheme",
             'lockstep needs fracture.cracks = "closing" or fracture.propagation = "dynamic"; remove the key, or name '

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -12,8 +13,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from cosim.analysis.lights import trust
+from cosim.analysis.moments import moments
 from cosim.analysis.run_data import AXES, COMPONENTS, RunData
 from cosim.build import build, run_info
+from cosim.moments import Grip, grip_of
 from cosim.observer import Observer
 from cosim.scenario.lengths import characteristic_length
 from cosim.scenario.scenario import Scenario
@@ -53,10 +56,12 @@ class RunResult:
     ledger: dict[str, float] = field(default_factory=dict)
     loads: list[tuple[int, Array]] = field(default_factory=list)  #: end [ns] and load (3, 3) of every window
     staggering: list[tuple[float, float]] = field(default_factory=list)  #: Fx and Fz of every window [N]
+    grips: list[Grip] = field(default_factory=list)  #: moments and point of attack of every window
 
-    def see(self, frame: Frame) -> None:
+    def see(self, frame: Frame, grip: Grip) -> None:
         """Takes in one window."""
         self.t_ns = frame.t_ns
+        self.grips.append(grip)
         self.loads.append((frame.t_ns, frame.load))
         self.staggering.append((frame.budget.get("fx_staggering", 0.0), frame.budget.get("fz_staggering", 0.0)))
         self.events.extend(frame.events)
@@ -69,6 +74,7 @@ class RunResult:
             "window_ns": str(self.scenario.window_ns),
             "spacing_m": repr(float(self.scenario.sheet.spacing)),
             "characteristic_length_m": repr(characteristic_length(self.scenario.model)),
+            "moment_point_m": json.dumps(self.scenario.moment_point),
         }
         staggering = np.array(self.staggering).reshape(-1, 2)
         return RunData(
@@ -79,6 +85,8 @@ class RunResult:
             tuple(self.events),
             ledger={name: np.array([value]) for name, value in self.ledger.items()},
             budget={"fx_staggering": staggering[:, 0], "fz_staggering": staggering[:, 1]},
+            moment=np.array([g.moment for g in self.grips]).reshape(-1, 3, 3),
+            weight=np.array([g.weight for g in self.grips]).reshape(-1, 4),
         )
 
     @property
@@ -111,6 +119,7 @@ class RunResult:
             "substep_s": self.scenario.rubble.substep,
             "peaks": self.peaks.to_json(),
             "peaks_by_phase": {phase: peaks.to_json() for phase, peaks in self.by_phase.items()},
+            "moments": moments(self.data),
             "trust": trust(self.data),
             "events": [event_json(e) for e in self.data.lasting.events],
             "fragments": self.fragments,
@@ -151,7 +160,7 @@ def run_scenario(
         while scheduler.t_ns < scenario.duration_ns:
             frame = scheduler.macro_step()
             _is_finite(frame)
-            result.see(frame)
+            result.see(frame, grip_of(frame, info.attack, scenario.moment_point))
             for observer in observers:
                 observer.on_frame(frame)
     _finish(result, scheduler)

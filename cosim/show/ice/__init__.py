@@ -1,0 +1,1 @@
+"""Pictures of the ice in two dimensions: plan and vertical sections, for pages, videos and still pictures."""

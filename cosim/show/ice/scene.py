@@ -1,0 +1,86 @@
+"""What pictures of a run have around the ice: structure, sections, sizes. Read from the scenario that it carries."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+
+import numpy as np
+
+from cosim.analysis.run_data import RunData
+from cosim.build import build_attack
+from cosim.errors import InputError
+from cosim.scenario.model import ScenarioModel
+from cosim.scenario.scenario import Scenario
+from coupling.attack import Attack
+from coupling.interface import Array, Structure
+
+TOWER_RADIUS, TOWER_HEIGHT = 0.35, 1.2  #: of a tower that is drawn and not modelled, per radius at the top
+DEEPEST = 12.0  #: thicknesses of the ice below the water to which a structure is drawn
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Around the ice of a run."""
+
+    attack: Attack
+    thickness: float  #: of the ice [m]
+    width: float  #: of the floe [m]
+
+    @property
+    def structure(self) -> Structure:
+        """What the ice meets."""
+        return self.attack.structure
+
+    def section_at(self, y: float) -> int:
+        """Number of the section that holds y."""
+        return round((y - self.attack.origin) / self.attack.pitch)
+
+    def centre(self, section: int) -> float:
+        """Y of a section's middle [m]."""
+        return self.attack.origin + self.attack.pitch * section
+
+    def bottom(self) -> float:
+        """Lowest point of the structure in pictures [m]."""
+        return max(self.structure.bottom, -DEEPEST * self.thickness)
+
+    def cut(self, y: float) -> Array:
+        """Outline (n, 2) of the structure's cut by a section, in x and z; (0, 2) if it misses."""
+        s = self.structure
+        front, rear = s.section(y, self.bottom(), s.top, 0.01 * self.thickness)
+        if len(front) and not len(rear):  # a slope that does not end
+            end = front[:, 0].max() + 10.0 * self.thickness
+            rear = np.array([[end, front[0, 1]], [end, front[-1, 1]]])
+        return np.concatenate((front, rear[::-1])) if len(front) else np.empty((0, 2))
+
+    def waterline(self) -> Array:
+        """Outline (n, 2) of the structure at the waterline, in x and y; a slope that does not end: its front (2, 2)."""
+        s = self.structure
+        if not np.isfinite(s.half_width):
+            y = np.array([-0.5, 0.5]) * self.width
+            return np.column_stack((s.face_x(y, np.zeros(2)), y))
+        y = s.half_width * np.sin(np.linspace(-0.5, 0.5, 121) * np.pi)
+        x = np.nan_to_num(s.face_x(y, np.zeros(len(y))))
+        return np.concatenate((np.column_stack((x, y)), np.column_stack((-x, y))[::-1]))
+
+    def tower(self) -> tuple[float, float, float] | None:
+        """Radius, lower and upper end of the tower that stands on the structure [m]; None on a slope without an end."""
+        s = self.structure
+        if not np.isfinite(s.half_width):
+            return None
+        radius = TOWER_RADIUS * s.half_width
+        if not s.faces_down:  # a cone that narrows upwards carries its tower on its upper end
+            radius = float(-s.face_x(0.0, s.top))
+        return radius, s.top, s.top + TOWER_HEIGHT * s.half_width
+
+
+def scene_of(run: RunData) -> Scene:
+    """Of a recorded run; InputError if its scenario cannot be read."""
+    try:
+        text = run.texts["scenario.toml"]
+        raw = tomllib.loads(text)
+        model = ScenarioModel.model_validate(raw)
+    except (KeyError, ValueError) as error:
+        raise InputError(f"{run.name}: its scenario cannot be read by this version; run it again") from error
+    attack = build_attack(Scenario(run.name, text, raw, model))
+    return Scene(attack, model.ice.thickness, model.sheet.width)

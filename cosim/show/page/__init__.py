@@ -1,0 +1,1 @@
+"""Parts of the page of a run: tables and series ready for its template."""
