@@ -5,7 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cosim.build import build, build_ice, build_rubble, build_sheet, build_steering, build_structure
+from cosim.build import build, build_ice, build_sheet, build_steering, build_structure
+from cosim.build_rubble import build_rubble
 from cosim.scenario.loading import load_scenario
 from coupling.steering import ByPower
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from cosim.build import build, filling_rate
+from cosim.build import build
+from cosim.build_rubble import filling_rate
 from cosim.scenario.loading import load_scenario
 from coupling.budget import TERMS
 from lattice.tops import ABOVE, BELOW, NAMES
