@@ -60,7 +60,8 @@ def build(scenario: Scenario) -> Scheduler:
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
         if scenario.rubble.initial_volume > 0.0:
-            lay_rubble(port, rubble, scenario.rubble.initial_volume, scenario.scenario.seed)
+            r = scenario.rubble
+            lay_rubble(port, rubble, r.initial_volume, r.initial_porosity, scenario.scenario.seed)
             ledger.initial_mass += rubble.mass
     c = scenario.coupling
     iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")

@@ -15,10 +15,10 @@ CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
 ROUNDS = 20
 
 
-def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, seed: int) -> None:
-    """Settles ``volume`` [m^3] of rubble in front of the structure with the sheet in equilibrium on it."""
+def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, porosity: float, seed: int) -> None:
+    """Settles ``volume`` [m^3] of ice as rubble of this porosity, with the sheet in equilibrium on it."""
     sections = front_sections(rubble)
-    pile = fill(rubble, volume, seed, sheet.edges(sections))
+    pile = fill(rubble, volume, porosity, seed, sheet.edges(sections))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):
         sheet.rest_under(rubble.forces_on_sheet())

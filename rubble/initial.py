@@ -1,8 +1,10 @@
 """Rubble that is there before the run: a stated volume of blocks settled under the ice in front of the structure.
 
 Blocks of the sheet's thickness and random length rise from below into the corner between sheet and structure and come
-to rest there. Their lengths, tilts and places follow from the seed alone. While they settle
-they do not move laterally. Porosity and slope are results: nothing is fitted to them.
+to rest there. Their lengths, tilts and places follow from the seed alone. While they settle they do not move laterally.
+
+In a plane rectangles pack to a porosity of `PACKED`. Blocks are narrower than a section, with gaps between their sides,
+so that the pile has the porosity that is asked for, whatever the mesh. The slope is a result.
 """
 
 from __future__ import annotations
@@ -19,8 +21,19 @@ from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.piece import Slab
 
-POROSITY, SLOPE = 0.3, np.radians(35.0)  #: of the heap that the blocks are spread for; the result may differ
+SLOPE = np.radians(35.0)  #: of the heap that the blocks are spread for; the result may differ
+PACKED = 0.12  #: porosity of settled rectangles in a plane: 0.09 to 0.15 for lengths of 0.5 to 1.5 thicknesses
 CALM = 1e-6  #: kinetic over potential energy of a settled pile
+
+
+@dataclass(frozen=True)
+class Heap:
+    """What a section is filled with."""
+
+    volume: float  #: of ice [m^3]
+    share: float  #: width of the blocks over that of the section
+    porosity: float  #: that the pile is to have
+    lengths: tuple[float, float]  #: of the blocks, least and greatest, in thicknesses
 
 
 @dataclass(frozen=True)
@@ -44,6 +57,7 @@ def settle(
     volume: float,
     seed: int,
     *,
+    porosity: float = 0.3,
     lengths: tuple[float, float] = (0.5, 1.5),
     longest: float = 300.0,
     window: float = 0.5,
@@ -51,13 +65,17 @@ def settle(
     """Fill the sections with ``volume`` [m^3] in equal shares and let it come to rest; ``layer`` has its sheet already.
 
     ``fronts`` holds for each section x of the structure's face at the sheet's underside and z of that underside [m];
-    ``lengths`` of the blocks in thicknesses. RuntimeError if the pile has not settled after ``longest`` [s].
+    ``porosity`` of the pile, ``lengths`` of the blocks in thicknesses. RuntimeError if the pile has not settled after
+    ``longest`` [s].
     """
     if not volume > 0.0 or not fronts:
         raise ValueError(f"initial rubble of {volume:g} m3 in {len(fronts)} sections; give more than 0 of both")
+    if not PACKED <= porosity < 1.0:
+        raise ValueError(f"initial rubble with a porosity of {porosity:g}; give {PACKED:g} to 1, blocks pack no closer")
     random = np.random.default_rng(seed)
+    heap = Heap(volume / len(fronts), (1.0 - porosity) / (1.0 - PACKED), porosity, lengths)
     for key in sorted(fronts):
-        _fill(layer, key, *fronts[key], volume / len(fronts), random, lengths)
+        _fill(layer, key, fronts[key], heap, random)
     return rest(layer, fronts, longest=longest, window=window)
 
 
@@ -81,22 +99,14 @@ def rest(
     return measure(layer, fronts, time, calm)
 
 
-def _fill(
-    layer: RubbleLayer,
-    key: int,
-    x_face: float,
-    z_top: float,
-    volume: float,
-    random: np.random.Generator,
-    lengths: tuple[float, float],
-) -> None:
+def _fill(layer: RubbleLayer, key: int, corner: tuple[float, float], heap: Heap, random: np.random.Generator) -> None:
     """Blocks of one section, one below the other: they rise and arrive in turn, as if poured."""
-    h, width = layer.physics.thickness, layer.pitch
-    area = volume / width
-    count = max(1, round(area / h**2 / (0.5 * sum(lengths))))
-    length = random.uniform(*lengths, count)
+    h, width, (x_face, z_top) = layer.physics.thickness, layer.pitch * heap.share, corner
+    area = heap.volume / width
+    count = max(1, round(area / h**2 / (0.5 * sum(heap.lengths))))
+    length = random.uniform(*heap.lengths, count)
     length *= area / (h * length.sum())
-    base = np.sqrt(2.0 * area / (1.0 - POROSITY) / np.tan(SLOPE))
+    base = np.sqrt(2.0 * heap.volume / layer.pitch / (1.0 - heap.porosity) / np.tan(SLOPE))
     row = 1.05 * float(np.hypot(length.max(), h))
     for i, size in enumerate(length):
         x, z = x_face - base * random.uniform(0.05, 0.65), z_top - (i + 0.6) * row
@@ -110,7 +120,8 @@ def _fill(
             layer.physics.rho_i,
             angle,
         )
-        layer.add_block(key, slab, fragment=-1, flooded=1.0)
+        y = layer.centre(key) + 0.5 * (layer.pitch - width) * random.uniform(-1.0, 1.0)
+        layer.add_block(key, slab, fragment=-1, flooded=1.0, y=float(y))
 
 
 def _calm(layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]]) -> float:
@@ -151,9 +162,10 @@ def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tup
     """Ice and pore area [m^2], slope of the rear flank [rad] and depth below the sheet [m] of one section."""
     section = layer.section(key)
     solids = section.cut.polygons
-    outlines = [b.outline for b in layer.blocks if layer.key_at(float(b.position[1])) == key]
-    if not outlines:
+    blocks = [b for b in layer.blocks if layer.key_at(float(b.position[1])) == key]
+    if not blocks:
         return None
+    outlines = [b.outline for b in blocks]
     corners = np.concatenate(outlines)
     x = np.arange(corners[:, 0].min() + step / 2, corners[:, 0].max(), step)
     z = np.arange(corners[:, 1].min() + step / 2, top, step)
@@ -166,7 +178,11 @@ def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tup
     flank, rear = low[: deepest + 1], x[: deepest + 1]
     on = np.isfinite(flank)
     slope = -np.polyfit(rear[on], flank[on], 1)[0] if on.sum() > 1 else 0.0
-    return float(covered.sum()) * step**2, float(pores.sum()) * step**2, float(np.arctan(slope)), top - low[deepest]
+    ice, room = (
+        sum(b.mass for b in blocks) / layer.physics.rho_i / layer.pitch,
+        float((covered | pores).sum()) * step**2,
+    )
+    return ice, room - ice, float(np.arctan(slope)), top - low[deepest]
 
 
 def _inside(polygon: Array, x: Array, z: Array) -> Array:

@@ -20,10 +20,10 @@ def front_sections(port: RubblePort) -> list[int]:
     return [k for k in keys if abs(y := layer.centre(k)) < half and np.isfinite(port.structure.face_x(y, 0.0))]
 
 
-def fill(port: RubblePort, volume: float, seed: int, edges: dict[int, SheetEdge]) -> Pile:
+def fill(port: RubblePort, volume: float, porosity: float, seed: int, edges: dict[int, SheetEdge]) -> Pile:
     """Settles ``volume`` [m^3] of new rubble in the sections of ``edges``."""
     _hold(port, edges)
-    return _settled(port, lambda: settle(port.layer, _corners(port, edges), volume, seed))
+    return _settled(port, lambda: settle(port.layer, _corners(port, edges), volume, seed, porosity=porosity))
 
 
 def rest_again(port: RubblePort, edges: dict[int, SheetEdge]) -> Pile:
