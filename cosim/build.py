@@ -54,8 +54,9 @@ def build(scenario: Scenario) -> Scheduler:
     contact = CONTACTS[scenario.contact.model]
     port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
-    if scenario.coupling.scheme == "lockstep" and scenario.rubble.enabled:
+    if scenario.coupling.scheme == "lockstep" and isinstance(rubble, RubblePort):
         port.lockstep(scenario.rubble.substep)
+        rubble.lockstep = True
     ledger = Ledger(port.initial_mass if sheet.present.all() else port.mass)
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush

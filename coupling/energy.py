@@ -10,6 +10,8 @@ The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.e
 * interface: work that blocks do on the edge they meet less work that the lattice receives on its nodes. It holds the
   lag of one window and what the edge's spring and mass take up: no store of its own, because the lattice stores the
   same deformation.
+* In lockstep there is no lag: what blocks lose in impacts on the sheet is what they give less what the lattice receives
+  on its nodes, friction apart. An impact that gives more than it takes would be below zero.
 
 While the sheet is served from a long step its terms stand still, all of them, and are booked when the step is done.
 A loss may be negative: the step of the rubble, its correction of overlap, dry tops and the side push add energy.
@@ -36,7 +38,9 @@ def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[st
     terms["handover_elastic_loss"] = sheet["left_elastic"]
     terms["handover_potential_loss"] = sheet["left_foundation"] - rubble.get("born_potential", 0.0)
     terms["handover_kinetic_loss"] = sheet["left_kinetic"] - rubble.get("born_kinetic", 0.0)
-    terms["interface_loss"] = rubble.get("sheet_work", 0.0) - sheet["received_work"]
+    terms["interface_loss"] = rubble.get("sheet_work", sheet["received_work"]) - sheet["received_work"]
+    if "meeting_work" in rubble:
+        terms["impact_sheet_loss"] += rubble["meeting_work"] - sheet["received_work"]
     return terms
 
 

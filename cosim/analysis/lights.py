@@ -18,7 +18,7 @@ from cosim.analysis.run_data import RunData
 from coupling.interface import NS, Array
 
 #: energy terms of no physics: below zero they have put energy in
-NUMERICS = ("side_push_loss", "interface_loss", "stepping_loss", "scheme_loss", "correction_loss")
+NUMERICS = ("interface_loss", "stepping_loss", "scheme_loss", "correction_loss", "impact_sheet_loss")
 
 
 @dataclass(frozen=True)

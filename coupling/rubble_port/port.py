@@ -75,6 +75,7 @@ class RubblePort:
 
         self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, domain=domain, threads=threads)
         self.physics = physics
+        self.lockstep = False  #: windows are met step by step (`begin`, `meet`, `end`)
         self.structure = structure
         self.on_crushed: Callable[[float], None] = _ignore  #: is told the mass that blocks lose in a window [kg]
         self._edges: dict[int, SheetEdge] = {}
@@ -213,7 +214,10 @@ class RubblePort:
     def energy(self) -> dict[str, float]:
         """Energy of the blocks by term [J]; see `rubble.energy`."""
         kinetic, potential = self._arrivals.born
-        return {**energy_terms(self.layer), "born_kinetic": float(kinetic), "born_potential": float(potential)}
+        terms = energy_terms(self.layer)
+        if self.lockstep:
+            terms["meeting_work"] = terms.pop("sheet_work")
+        return {**terms, "born_kinetic": float(kinetic), "born_potential": float(potential)}
 
     @property
     def momenta(self) -> dict[str, float]:

@@ -38,13 +38,13 @@ def run(fx=None, ledger=(), budget=(), events=BREAKS, **metadata):
 
 
 def test_a_run_within_all_limits_is_trustworthy():
-    found = lights.trust(run(ledger={"drift_work": 1e6, "side_push_loss": -5e4, "friction_loss": 9e5}))
+    found = lights.trust(run(ledger={"drift_work": 1e6, "correction_loss": -5e4, "friction_loss": 9e5}))
     assert (found["trustworthy"], found["because"]) == (True, [])
     assert len(lights.trust_lines(found)) == 1
 
 
 def test_energy_from_numerics_counts_what_was_put_in():
-    books = {"drift_work": 1e6, "side_push_loss": -1.2e5, "interface_loss": -5e4, "stepping_loss": 4e5}
+    books = {"drift_work": 1e6, "correction_loss": -1.2e5, "interface_loss": -5e4, "stepping_loss": 4e5}
     assert lights.numerics_share(run(ledger=books)) == pytest.approx(0.17, rel=1e-12)
     found = lights.trust(run(ledger=books))
     assert found["because"] == ["17% of the drift's work came from numerics (halve coupling.window and rubble.substep)"]

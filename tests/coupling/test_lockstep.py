@@ -40,10 +40,19 @@ def test_forces_are_taken_in_the_window_in_which_they_are_given(pressed):
 
 
 def test_power_that_is_given_is_taken(pressed):
-    """Energy that the interface loses or makes, against the work of the drift."""
+    """Power that the rubble believes to give less what the sheet receives, against the work of the drift."""
     s, _ = pressed
     assert abs(s.power.loss) < 0.15 * drift(s)
     assert s.ledger.energy.relative < 1e-4
+    assert s.ledger.energy.terms["interface_loss"] == 0.0
+
+
+def test_an_impact_is_what_is_given_less_what_is_received(pressed):
+    """Nothing that the sheet is pressed by makes energy, and the rubble's own account differs by the interface."""
+    s, _ = pressed
+    terms = s.ledger.energy.terms
+    assert terms["impact_sheet_loss"] > -1e-2 * drift(s)
+    assert terms["friction_sheet_loss"] >= 0.0
 
 
 def test_without_what_the_lattice_does_in_a_sub_step_the_sheet_creeps_into_the_pile(monkeypatch, pressed):
