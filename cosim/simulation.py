@@ -15,6 +15,7 @@ from threadpoolctl import threadpool_limits
 from cosim.analysis.lights import trust
 from cosim.analysis.moments import moments
 from cosim.analysis.run_data import AXES, COMPONENTS, RunData
+from cosim.analysis.volumes import volumes
 from cosim.build import build, run_info
 from cosim.moments import Grip, grip_of
 from cosim.observer import Observer
@@ -56,6 +57,7 @@ class RunResult:
     ledger: dict[str, float] = field(default_factory=dict)
     loads: list[tuple[int, Array]] = field(default_factory=list)  #: end [ns] and load (3, 3) of every window
     staggering: list[tuple[float, float]] = field(default_factory=list)  #: Fx and Fz of every window [N]
+    rubble: list[tuple[float, float]] = field(default_factory=list)  #: stored and cleared after every window [kg]
     grips: list[Grip] = field(default_factory=list)  #: moments and point of attack of every window
 
     def see(self, frame: Frame, grip: Grip) -> None:
@@ -64,6 +66,7 @@ class RunResult:
         self.grips.append(grip)
         self.loads.append((frame.t_ns, frame.load))
         self.staggering.append((frame.budget.get("fx_staggering", 0.0), frame.budget.get("fz_staggering", 0.0)))
+        self.rubble.append((frame.ledger.get("rubble_mass", 0.0), frame.ledger.get("cleared_mass", 0.0)))
         self.events.extend(frame.events)
 
     @cached_property
@@ -124,6 +127,9 @@ class RunResult:
             "events": [event_json(e) for e in self.data.lasting.events],
             "fragments": self.fragments,
             "blocks": self.blocks,
+            "rubble": volumes([t for t, _ in self.loads], *np.array(self.rubble).T, density=self.scenario.ice.density)
+            if self.rubble
+            else {},
             "ledger": self.ledger,
         }
 
