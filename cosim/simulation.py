@@ -109,6 +109,12 @@ class RunResult:
             impulse, before = impulse + (t - before) * load.sum(axis=0), t
         return np.asarray(impulse / max(before, 1))
 
+    @property
+    def volumes(self) -> dict[str, object]:
+        """Rubble over time."""
+        stored, cleared = np.array(self.rubble).reshape(-1, 2).T
+        return volumes([t for t, _ in self.loads], stored.tolist(), cleared.tolist(), self.scenario.ice.density)
+
     def to_json(self) -> dict[str, Any]:
         """What ``cosim run --json`` prints, but for the name of the recording."""
         simulated = self.t_ns / NS
@@ -127,9 +133,7 @@ class RunResult:
             "events": [event_json(e) for e in self.data.lasting.events],
             "fragments": self.fragments,
             "blocks": self.blocks,
-            "rubble": volumes([t for t, _ in self.loads], *np.array(self.rubble).T, density=self.scenario.ice.density)
-            if self.rubble
-            else {},
+            "rubble": self.volumes,
             "ledger": self.ledger,
         }
 

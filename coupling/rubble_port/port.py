@@ -24,9 +24,9 @@ from coupling.interface import (
     SimulationError,
     Structure,
 )
+from coupling.rubble_port.events import told
 from coupling.rubble_port.hand_over import Arrivals
 from rubble import snapshot
-from rubble.breaking import Break
 from rubble.cut import Bearing, Cut, faceted
 from rubble.domain import Domain
 from rubble.energy import energy_terms
@@ -186,7 +186,7 @@ class RubblePort:
 
     def events(self, t_ns: int, load: Array) -> list[Event]:
         """Plates that have broken again in the last window."""
-        return [_told(t_ns, load, b) for b in self.layer.breaks]
+        return [told(t_ns, load, b) for b in self.layer.breaks]
 
     def load(self) -> Array:
         """Mean force of the blocks on the structure over the last window, (3, 3): rows by `Phase` [N]."""
@@ -224,24 +224,6 @@ class RubblePort:
         """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
         lost = {"cleared": self.layer.gone.momentum, "crushed": self.layer.crushed.momentum}
         return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
-
-
-def _told(t_ns: int, load: Array, b: Break) -> Event:
-    x, y, z = b.position.tolist()
-    longer, area = max(b.lengths), sum(b.areas)
-    text = f"piece of {area:.0f} m2 breaks again into {b.areas[0]:.0f} and {b.areas[1]:.0f} m2"
-    fx, fy, fz = load.tolist()
-    return Event(
-        t_ns,
-        "breaks_again",
-        (fx, fy, fz),
-        cells=0,
-        position=(x, y, z),
-        text=text,
-        length=longer,
-        area=area,
-        cause="flexural-strength",
-    )
 
 
 def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:
