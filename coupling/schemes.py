@@ -9,10 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from coupling.interface import NS, Fragment, IntArray, SheetEdge, SheetForces, SheetReport, SimulationError
+from coupling.interface import (
+    NS,
+    Fragment,
+    IntArray,
+    Restore,
+    SheetEdge,
+    SheetForces,
+    SheetReport,
+    SimulationError,
+)
 from coupling.relaxation import Aitken, change, combined
 from coupling.scheduler import Scheduler, Scheme
 
@@ -42,6 +52,10 @@ class SerialExplicit:
 
     def __init__(self) -> None:
         self._mean = SheetForces.none()
+
+    def save(self) -> Restore:
+        """The running mean between two windows."""
+        return partial(setattr, self, "_mean", self._mean)
 
     def __call__(self, s: Scheduler) -> SheetReport:
         """One window."""

@@ -18,11 +18,13 @@ from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
 from rubble.plates import times, turn_back
 from rubble.rows import CRUSHES, SHEET, Rows, set_arms
-from rubble.sides import NEAR, directions, outline_of
+from rubble.sides import NEAR, apart, directions, outline_of
 from rubble.slices import Pieces, end_along_y
 from rubble.slots import SHEET_SLOT
 
 BANK = -2  #: marks a row of a plate and a side of the sheet
+#: overlap as seen along y, in thicknesses, up to which a plate lies over, under or before the sheet, and not beside it
+ABOVE = 0.05
 
 
 class Banks(NamedTuple):
@@ -118,7 +120,7 @@ def _meet(scene: Scene, pieces: Pieces, which: tuple[int, int, float], thickness
     """The contact of a slice with the sheet of the next section as bank k; says whether there may be one."""
     s, e, sign = which
     nodes, first, end = scene.edges.nodes, scene.edges.offset[e], scene.edges.offset[e + 1]
-    own, area, at_x, at_z = outline_of(scene, s), 0.0, 0.0, 0.0
+    own, area, at_x, at_z, deepest = outline_of(scene, s), 0.0, 0.0, 0.0, 0.0
     quad, half = np.empty((4, 2)), 0.5 * thickness
     for i in range(first, end - 1):
         a, b = nodes[i + 1], nodes[i]
@@ -128,7 +130,9 @@ def _meet(scene: Scene, pieces: Pieces, which: tuple[int, int, float], thickness
         if common.shape[0] >= 3:
             m = area_moments(common)
             area, at_x, at_z = area + m.area, at_x + m.area * m.x, at_z + m.area * m.z
-    if area <= 0.0:
+            gap, _, _ = apart(own, quad)
+            deepest = max(deepest, -gap)
+    if area <= 0.0 or deepest < ABOVE * thickness:
         return False
     x, z = at_x / area, at_z / area
     y, _, _, _ = end_along_y(scene.plates, scene.slices, pieces, s, x, z, -sign)

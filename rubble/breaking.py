@@ -107,6 +107,7 @@ def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] 
     if len(prisms) < 2:
         return None
     at, cut = plate.position.copy(), plate.position + plate.rotation[:, axis] * place
+    sums = store.tables.sums[plate.row].copy()
     store.take(plate)
     start = Start(at, plate.rows.quaternion[plate.row].copy(), plate.velocity.copy(), plate.omega.copy())
     new = []
@@ -116,6 +117,7 @@ def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] 
         new.append(store.make(plate.fragment, own, moved, plate.flooded))
         new[-1].aligned, new[-1].sliding = plate.aligned, plate.sliding
     store.add(*new)
+    store.tables.sums[new[0].row] = sums  # of the window that ends: the load of the whole plate
     lengths = [float(np.diff(span_of(p)[axis])[0]) for p in new]
     areas = [plan_area(own, store.physics.thickness) for own in prisms]
     return new, Break(cut, (lengths[0], lengths[1]), (areas[0], areas[1]), stress)

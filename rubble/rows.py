@@ -18,6 +18,7 @@ from rubble.plates import Plates
 
 ICE, STRUCTURE, SHEET, JOINT = 0, 1, 2, 3  #: kinds of rows
 KINDS = ("ice", "structure", "sheet")
+GIVES_WAY = 20.0  #: time in which ice that has met deep in other ice comes apart [s]
 CRUSHES = 1.0 - 1e-9  #: share of the greatest impulse from which a contact crushes
 HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
@@ -140,5 +141,5 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
         point.mu = mu
         n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
         over = max(point.depth - surface.slop, 0.0)
-        point.met = over if point.crushes else min(point.met, over)
+        point.met = over if point.crushes else min(point.met, over) * (1.0 - dt / GIVES_WAY)
         point.shift_speed = surface.bias * (over - point.met) / dt

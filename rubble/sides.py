@@ -118,7 +118,7 @@ def outline_of(scene: Scene, s: int) -> Array:
 
 
 @compiled(nogil=True)
-def _apart(a: Array, b: Array) -> tuple[float, float, float]:
+def apart(a: Array, b: Array) -> tuple[float, float, float]:
     """Gap between two convex outlines along the edge normal on which it is largest, and that normal, from a to b."""
     best, nx, nz = -np.inf, 1.0, 0.0
     for side in range(2):
@@ -153,7 +153,7 @@ def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, s
             b = order[o]
             if slices.plate[a] == slices.plate[b]:
                 continue
-            gap, nx, nz = _apart(outlines[a], outlines[b])
+            gap, nx, nz = apart(outlines[a], outlines[b])
             if gap > near or _both_cut(pieces, slices.piece[a], slices.piece[b]):
                 continue
             room, both = found < sides.area.shape[0], (outlines[a], outlines[b])

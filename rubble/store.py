@@ -46,6 +46,7 @@ class Store:
         self.list: list[Plate] = []
         self.plates = empty(0)
         self._next, self._next_piece = 0, 0
+        self._summed: list[int] = []  #: numbers of the plates in the tables
         self.tables: Tables
         self.lay_out()
 
@@ -84,7 +85,8 @@ class Store:
         self.lay_out()
 
     def lay_out(self) -> None:
-        """Tables anew; the plates move into them."""
+        """Tables anew; the plates move into them with what was summed of each."""
+        before = dict(zip(self._summed, self.tables.sums, strict=True)) if self._summed else {}
         new = empty(len(self.list))
         for i, plate in enumerate(self.list):
             _copy(plate.rows, plate.row, new, i)
@@ -92,6 +94,9 @@ class Store:
         orient_all(new)
         self.plates = new
         self.tables = _tables(self.list, self.physics)
+        self._summed = [p.id for p in self.list]
+        for row, number in zip(self.tables.sums, self._summed, strict=True):
+            row[:] = before.get(number, 0.0)
 
 
 def weigh(plate: Plate, physics: RubblePhysics, narrow: float) -> None:

@@ -15,11 +15,11 @@ from rubble.store import Store
 def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict[str, NDArray[Any]]:
     """All plates as arrays, in the order of their numbers.
 
-    ``id``, ``section`` that holds its centre, ``sliding`` (else rotating), ``mass`` [kg], ``width`` [m], ``position``
-    (n, 3) [m], ``quaternion`` (n, 4), ``angle`` counter-clockwise in the x-z picture [rad], ``velocity`` (n, 3) [m/s],
-    ``spin`` (n, 3) and ``omega``, its rate in the picture [rad/s], ``load`` (n, 3) mean force on the structure [N];
-    ``outline`` (v, 2) corners of its middle piece [m], of which plate i owns those from ``offset[i]`` to
-    ``offset[i + 1]``.
+    ``id``, ``section`` that holds its centre, ``sliding`` (else rotating), ``mass`` [kg], ``width`` [m],
+    ``position`` (n, 3) [m], ``bearing`` (n, 3) as `contact_centres`, ``quaternion`` (n, 4), ``angle`` counter-
+    clockwise in the x-z picture [rad], ``velocity`` (n, 3) [m/s], ``spin`` (n, 3) and ``omega``, its rate in the
+    picture [rad/s], ``load`` (n, 3) mean force on the structure [N]; ``outline`` (v, 2) corners of its middle piece
+    [m], of which plate i owns those from ``offset[i]`` to ``offset[i + 1]``.
     """
     plates, list_ = store.plates, store.list
     n = len(list_)
@@ -37,6 +37,7 @@ def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict
         "spin": plates.velocity[:n, 3:].copy(),
         "omega": -plates.velocity[:n, 4],
         "load": loads(store, window),
+        "bearing": contact_centres(store),
         "outline": np.concatenate([np.zeros((0, 2)), *outlines]),
         "offset": np.cumsum([0, *map(len, outlines)], dtype=np.int64),
     }

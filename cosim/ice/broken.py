@@ -14,14 +14,12 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet
-from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
 from scipy import optimize, sparse
 
 from cosim.errors import InputError
 from cosim.ice.columns import numbers, read_table
 from cosim.ice.fields import middles
-from cosim.recording.reader import messages, read_run
-from cosim.recording.scenes import NODE
+from cosim.recording.reader import read_run, recorded_pictures
 from coupling.interface import Array, BoolArray, IntArray
 from lattice.cracks.hinges import DEEP
 from lattice.cracks.sheet import CrackingSheet
@@ -99,22 +97,17 @@ def _recorded(path: Path, grid: Grid) -> tuple[BoolArray, BoolArray, Array]:
     """Of the last picture of a recording: nodes that are not there, cells cracked deeper than to the middle."""
     run = read_run(path)  # refuses what is no recording
     last = None
-    for _, _, data in messages(path, ("/ice/nodes",)):
-        last = data
+    for picture in recorded_pictures(path):
+        last = picture.sheet
     if last is None:
         raise InputError(f"{path}: holds no picture of the ice; record a run with recording.every below its duration")
-    nodes = np.frombuffer(PointCloud.FromString(last).data, NODE)
     spacing = float(run.metadata["spacing_m"])
-    if not np.isclose(spacing, grid.d, rtol=1e-6) or (len(nodes) and nodes["node"].max() >= grid.nodes):
+    if not np.isclose(spacing, grid.d, rtol=1e-6) or last.shape != (grid.nx, grid.ny):
         raise InputError(
             f"{path}: its sheet has cells of {spacing:g} m, this one of {grid.d:g} m; give the same sheet.nodes, "
             "length and width, or a table by `cosim run --ice`"
         )
-    present = np.zeros(grid.nodes, bool)
-    present[nodes["node"]] = True
-    damage = np.zeros(grid.nodes)
-    damage[nodes["node"]] = nodes["damage"]
-    return ~present, cell_damage(grid, present, damage) >= DEEP, np.full(grid.cells, np.nan)
+    return ~last.present, cell_damage(grid, last.present, last.damage) >= DEEP, np.full(grid.cells, np.nan)
 
 
 def cell_damage(grid: Grid, present: BoolArray, damage: Array) -> Array:

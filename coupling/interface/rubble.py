@@ -27,6 +27,7 @@ class BlockTable:
     velocity: Array  #: (n, 3) [m/s]
     omega: Array  #: (n,) rate of `angle` [rad/s]
     load: Array  #: (n, 3) mean force on the structure over the window [N]
+    bearing: Array  #: (n, 3) where it acts, mean of the contacts over the window; nan without one [m]
     outline: Array  #: (v, 2) corner points of all blocks in the x-z plane, in world coordinates [m]
     offset: IntArray  #: (n + 1,) block i owns outline[offset[i]:offset[i + 1]]
 
@@ -51,6 +52,7 @@ class BlockTable:
             velocity=np.empty((0, 3)),
             omega=f,
             load=np.empty((0, 3)),
+            bearing=np.empty((0, 3)),
             outline=np.empty((0, 2)),
             offset=np.zeros(1, np.int64),
         )

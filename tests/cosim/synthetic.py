@@ -127,6 +127,7 @@ def blocks(scenario: Scenario, t: float) -> BlockTable:
         zero,
         np.zeros(n),
         zero,
+        np.full((n, 3), np.nan),
         np.concatenate(outline),
         4 * np.arange(n + 1),
     )

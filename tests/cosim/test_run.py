@@ -188,8 +188,6 @@ def test_a_steered_run_ends_on_time():
         CASE,
         [
             *QUICK,
-            "coupling.scheme=serial-implicit",
-            "coupling.unconverged=count",
             "coupling.steering=power",
             "coupling.shortest_window='10 ms'",
             "coupling.window='100 ms'",

@@ -37,13 +37,14 @@ def picture(s, windows):
 
 def set_back(s, saved, t_ns):
     saved[0]()
+    saved[3]()
     s.t_ns, s.jump, s.power = t_ns, saved[1], copy(saved[2])
 
 
 def until(s, happens):
     """Runs to the start of the window in which something happens."""
     while True:
-        saved, t_ns, before = (s.save(), s.jump, copy(s.power)), s.t_ns, s.fragments
+        saved, t_ns, before = (s.save(), s.jump, copy(s.power), s._scheme.save()), s.t_ns, s.fragments
         frame = s.macro_step()
         if happens(s, frame, before):
             return saved, t_ns, frame
