@@ -29,7 +29,6 @@ SPAN, WIDTH = 6.0, 2.0  #: length and width of a beam in thicknesses where no te
 FEWEST = 2  #: cells over the width of the beam, however large the sheet's are
 #: simulations at most; difference of the load that counts as none, and the largest one that is taken, relative
 TRIALS, CLOSE, ENOUGH = 12, 5e-3, 2e-2
-BLOCKS = 850  #: of sub-steps, in each of which the tip of the beam is moved on, until theory breaks the beam twice
 FALL = 0.7  #: share of its largest load to which a broken beam has come down
 #: time of a test and material damping of its ice in units of (h / g)^(1/2), so that a Froude copy of a beam has the
 #: same test: 6 s and 0.1 ms for ice of 3 m, slow against the waves of the beam and the swing of the plate on water
@@ -102,8 +101,7 @@ class BeamTest:
 
     def strength(self) -> float:
         """Nominal strength at the largest force, 6 F a / (w h^2) with the arm a of `CutBeam` [Pa]."""
-        e, tip = self.engine, self.cut.tip
-        block = max(1, round(e.window / e.dt / BLOCKS))
+        e, tip, block = self.engine, self.cut.tip, 8
         everything = np.ones(self.cut.grid.nodes, bool)
         e.set_cells(self.live, np.full(len(self.live), self.ice.sigma_t), everything)
         e.start(State.rest(self.cut.grid.nodes), everything, ())
