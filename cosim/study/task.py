@@ -71,10 +71,10 @@ def run_variant(study: Study, number: int, variant: Variant) -> Row:
         scenario = checked(study.written, (*study.overrides, *variant.overrides))
         if refused := too_large(cost_of(scenario.model)):
             return {"error": refused}
-        path, balances = study.recording(number), Balances()
-        run = run_scenario(scenario, [balances]) if path is None else _recorded(scenario, balances, path)
+        path, kept = study.recording(number), AsRecorded()
+        run = run_scenario(scenario, [kept]) if path is None else _recorded(scenario, kept, path)
         result, mean = run.to_json(), run.mean_load()
-        features = _features(study, balances.with_run(run))
+        features = _features(study, kept.with_run(run))
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}
     row = {"averaging_s": result["averaging_s"], "not_trustworthy": "; ".join(result["trust"]["because"])}
@@ -85,14 +85,18 @@ def run_variant(study: Study, number: int, variant: Variant) -> Row:
     return row | features | {name: result[name] for name in ("simulated_s", "wall_s", "fragments", "blocks")}
 
 
-class Balances:
-    """Observer that keeps the ledger of every window: features ask for rates."""
+class AsRecorded:
+    """Observer that keeps what features ask for beside loads and events: the ledger of every window, and metadata."""
 
     def __init__(self) -> None:
         self._ledger: list[dict[str, float]] = []
+        self._metadata: dict[str, str] = {}
 
     def on_start(self, run_info: RunInfo) -> None:
-        """Nothing."""
+        """Keep what stays constant."""
+        from cosim.recording.metadata import run_metadata
+
+        self._metadata = run_metadata(run_info, {})
 
     def on_frame(self, frame: Frame) -> None:
         """Keep the ledger."""
@@ -105,10 +109,10 @@ class Balances:
         """The run as a recording would give it."""
         names = dict.fromkeys(name for terms in self._ledger for name in terms)
         columns = {name: np.array([terms.get(name, np.nan) for terms in self._ledger]) for name in names}
-        return replace(run.data, ledger=columns)
+        return replace(run.data, ledger=columns, metadata=self._metadata)
 
 
-def _recorded(scenario: Scenario, balances: Balances, path: Path) -> RunResult:
+def _recorded(scenario: Scenario, kept: AsRecorded, path: Path) -> RunResult:
     """A run with its recording, which tells how it ended; one that is there from an earlier try is written over."""
     from cosim.errors import explain
     from cosim.recording.writer import Recorder
@@ -116,7 +120,7 @@ def _recorded(scenario: Scenario, balances: Balances, path: Path) -> RunResult:
 
     recorder = Recorder(path, force=True)
     try:
-        return run_scenario(scenario, [balances, recorder])
+        return run_scenario(scenario, [kept, recorder])
     except Exception as error:
         recorder.ending = " ".join(explain(error)[0].split())
         raise

@@ -176,7 +176,9 @@ def test_features_of_a_row_are_those_of_its_recording(cosim, tmp_path):
     short = ["scenario.duration='6 s'", "sheet.nodes=[24,24]", "rubble.enabled=false", "fracture.cracks=open"]
     short.append("ice.tensile_strength='750 kPa'")
     where = Where(recordings=tmp_path / "r")
-    the = plan(case, (), [*short, "ice.strength_field={variation=0.2}"], Design(seeds=1), where)
+    the = plan(
+        case, (), [*short, "ice.strength_field={variation=0.2,correlation_length='10 m'}"], Design(seeds=1), where
+    )
     with table_of(the, where) as out:
         (row,) = run_sweep(the, where, out, Talk(QUIET))["variants"]
     assert row["error"] is None
