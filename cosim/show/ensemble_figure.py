@@ -49,8 +49,8 @@ def _exceedance(ax: Axes, name: str, groups: list[str], ran: list[dict[str, Any]
             continue
         column = name if name.endswith("_peak") and name in ran[0] else FEATURE + name
         values = sorted(r[column] for r in ran if r["group"] == group and r.get(column) is not None)
-        x = np.array(values) / scale.size
-        above = 1.0 - np.arange(len(x)) / len(x)
+        x = np.array([*values, values[-1]]) / scale.size
+        above = np.linspace(1.0, 0.0, len(x))
         ax.step(x, above, where="pre", color=colour, lw=1.2, label=group)
         marks = np.array([row["p05"], row["median"], row["p95"]]) / scale.size
         ax.plot(marks, [0.95, 0.5, 0.05], "o", ms=4, color=colour)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -91,7 +91,8 @@ def plan(scenario: str, vary: Sequence[str], overrides: Sequence[str], design: D
     variants = tuple(design.variants(axes, base.seed))
     if where.keep and max(where.keep) >= len(variants):
         raise InputError(f"--keep {max(where.keep)}: there are {len(variants)} variants, numbered from 0")
-    study = Study(written, tuple(overrides), text, where.recordings, where.keep)
+    folder = None if where.recordings is None else where.recordings.resolve()  # workers may stand elsewhere
+    study = Study(replace(written, file=written.file.resolve()), tuple(overrides), text, folder, where.keep)
     return Plan(base, study, design, axes, variants, reference)
 
 

@@ -8,15 +8,19 @@ time of each variant; features are those of the scenario's reference.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from cosim.scenario.loading import Written
 from cosim.study.variants import Variant
-from coupling.interface import PHASES
+from coupling.interface import PHASES, Frame
 
 if TYPE_CHECKING:
+    from cosim.analysis.run_data import RunData
+    from cosim.observer import RunInfo
     from cosim.scenario.scenario import Scenario
     from cosim.simulation import RunResult
 
@@ -67,10 +71,10 @@ def run_variant(study: Study, number: int, variant: Variant) -> Row:
         scenario = checked(study.written, (*study.overrides, *variant.overrides))
         if refused := too_large(cost_of(scenario.model)):
             return {"error": refused}
-        path = study.recording(number)
-        run = run_scenario(scenario) if path is None else _recorded(scenario, path)
+        path, kept = study.recording(number), AsRecorded()
+        run = run_scenario(scenario, [kept]) if path is None else _recorded(scenario, kept, path)
         result, mean = run.to_json(), run.mean_load()
-        features = _features(study, run)
+        features = _features(study, kept.with_run(run))
     except Exception as error:
         return {"error": " ".join(explain(error)[0].split())}
     row = {"averaging_s": result["averaging_s"], "not_trustworthy": "; ".join(result["trust"]["because"])}
@@ -81,7 +85,34 @@ def run_variant(study: Study, number: int, variant: Variant) -> Row:
     return row | features | {name: result[name] for name in ("simulated_s", "wall_s", "fragments", "blocks")}
 
 
-def _recorded(scenario: Scenario, path: Path) -> RunResult:
+class AsRecorded:
+    """Observer that keeps what features ask for beside loads and events: the ledger of every window, and metadata."""
+
+    def __init__(self) -> None:
+        self._ledger: list[dict[str, float]] = []
+        self._metadata: dict[str, str] = {}
+
+    def on_start(self, run_info: RunInfo) -> None:
+        """Keep what stays constant."""
+        from cosim.recording.metadata import run_metadata
+
+        self._metadata = run_metadata(run_info, {})
+
+    def on_frame(self, frame: Frame) -> None:
+        """Keep the ledger."""
+        self._ledger.append(dict(frame.ledger))
+
+    def on_close(self) -> None:
+        """Nothing."""
+
+    def with_run(self, run: RunResult) -> RunData:
+        """The run as a recording would give it."""
+        names = dict.fromkeys(name for terms in self._ledger for name in terms)
+        columns = {name: np.array([terms.get(name, np.nan) for terms in self._ledger]) for name in names}
+        return replace(run.data, ledger=columns, metadata=self._metadata)
+
+
+def _recorded(scenario: Scenario, kept: AsRecorded, path: Path) -> RunResult:
     """A run with its recording, which tells how it ended; one that is there from an earlier try is written over."""
     from cosim.errors import explain
     from cosim.recording.writer import Recorder
@@ -89,7 +120,7 @@ def _recorded(scenario: Scenario, path: Path) -> RunResult:
 
     recorder = Recorder(path, force=True)
     try:
-        return run_scenario(scenario, [recorder])
+        return run_scenario(scenario, [kept, recorder])
     except Exception as error:
         recorder.ending = " ".join(explain(error)[0].split())
         raise
@@ -97,14 +128,14 @@ def _recorded(scenario: Scenario, path: Path) -> RunResult:
         recorder.on_close()
 
 
-def _features(study: Study, run: RunResult) -> Row:
+def _features(study: Study, run: RunData) -> Row:
     """What the run gives for each feature of the reference, under `FEATURE` and its name; None if it has none."""
     from cosim.analysis.compare import compare
     from cosim.analysis.reference import parse_reference
 
     if study.reference is None:
         return {}
-    rows = compare(run.data, parse_reference(study.reference, "reference.toml"))
+    rows = compare(run, parse_reference(study.reference, "reference.toml"))
     return {FEATURE + row.feature.name: None if (x := row.simulated) is None else float(x) for row in rows}
 
 

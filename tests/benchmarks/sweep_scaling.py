@@ -21,8 +21,15 @@ from cosim.study.pool import Processes
 from cosim.study.sweep import Runner, sweep
 from cosim.study.task import Study, run_variant
 
-CASE = "van_vliet_2018_floe_55m_centre"
-SHORT = ("scenario.duration='6 s'", "sheet.nodes=[24, 24]", "rubble.initial_volume='60 m^3'")
+CASE = "basin_2010_floe_165m"
+SHORT = (
+    "scenario.duration='20 s'",
+    "sheet.nodes=[24, 24]",
+    "rubble.enabled=false",
+    "fracture.cracks=open",
+    "ice.tensile_strength='750 kPa'",
+    "ice.strength_field={variation=0.2,correlation_length='10 m'}",
+)
 
 
 def timed(study: Study, number: int, variant: Any) -> dict[str, Any]:

@@ -170,6 +170,25 @@ def test_an_ensemble_on_a_dask_cluster_is_equal_to_the_last_bit(tmp_path):
     assert [row["fx_peak"] for row in resumed["variants"]] == [row["fx_peak"] for row in here["variants"]]
 
 
+def test_features_of_a_row_are_those_of_its_recording(cosim, tmp_path):
+    """Rates from the ledger as well."""
+    case = "basin_2010_floe_165m"
+    short = ["scenario.duration='6 s'", "sheet.nodes=[24,24]", "rubble.enabled=false", "fracture.cracks=open"]
+    short.append("ice.tensile_strength='750 kPa'")
+    where = Where(recordings=tmp_path / "r")
+    the = plan(
+        case, (), [*short, "ice.strength_field={variation=0.2,correlation_length='10 m'}"], Design(seeds=1), where
+    )
+    with table_of(the, where) as out:
+        (row,) = run_sweep(the, where, out, Talk(QUIET))["variants"]
+    assert row["error"] is None
+    told = json.loads(cosim("compare", tmp_path / "r" / "variant_00000.mcap", "--json")[1])["features"]
+    assert {f["name"]: f["simulated"] for f in told} == {
+        name.removeprefix("feature_"): value for name, value in row.items() if name.startswith("feature_")
+    }
+    assert row["feature_first_encounter_fx"] > 1e6
+
+
 def dies_once(study, number, variant):
     """A task whose process dies the first time."""
     mark = Path(study, str(number))
