@@ -7,7 +7,7 @@ which is left out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -38,9 +38,18 @@ class Attack:
     structure: Structure
     origin: float  #: [m]
     pitch: float  #: [m]
+    _last: list[tuple[ContactForces, BlockTable, PointForces]] = field(default_factory=list, compare=False, repr=False)
 
     def points(self, contact: ContactForces, blocks: BlockTable) -> PointForces:
-        """All forces of a window that are not zero: those of the sheet by node, then those of the blocks."""
+        """All forces of a window that are not zero: those of the sheet by node, then those of the blocks.
+
+        Those of the last window are kept: several ask for them.
+        """
+        if not self._last or self._last[0][0] is not contact or self._last[0][1] is not blocks:
+            self._last[:] = [(contact, blocks, self._points(contact, blocks))]
+        return self._last[0][2]
+
+    def _points(self, contact: ContactForces, blocks: BlockTable) -> PointForces:
         touching = np.flatnonzero(contact.force.any(axis=1))
         pressing = np.flatnonzero(blocks.load.any(axis=1))
         of_sheet = np.where(contact.hinged[touching], Phase.ROTATING, Phase.BREAKING)

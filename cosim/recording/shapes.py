@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -100,16 +101,30 @@ class Bodies(Protocol):
 
 def prisms(blocks: Bodies) -> tuple[Array, IntArray, IntArray]:
     """Points, triangles and the block of every triangle: convex outlines in x-z, extruded by the block's width."""
-    points, faces, owner, base = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], [np.empty(0, np.int64)], 0
-    for i in range(blocks.count):
-        outline = blocks.outline[blocks.offset[i] : blocks.offset[i + 1]]
-        k, y, half = len(outline), blocks.position[i, 1], blocks.width[i] / 2
-        for side in (y - half, y + half):
-            points.append(np.column_stack([outline[:, 0], np.full(k, side), outline[:, 1]]))
-        faces.append(prism_faces(k) + base)
-        owner.append(np.full(len(faces[-1]), i))
-        base += 2 * k
-    return np.concatenate(points), np.concatenate(faces), np.concatenate(owner)
+    count = np.diff(blocks.offset)
+    owner = np.repeat(np.arange(blocks.count), count)
+    near = blocks.offset[:-1][owner] + np.arange(len(owner))  # a block's corners, first all on one side
+    points = np.empty((2 * len(owner), 3))
+    for place, side in ((near, -0.5), (near + count[owner], 0.5)):
+        points[place] = np.column_stack(
+            (blocks.outline[:, 0], (blocks.position[:, 1] + side * blocks.width)[owner], blocks.outline[:, 1])
+        )
+    faces, of = _repeated(blocks, prism_faces, 4 * count - 4)
+    return points, faces, of
+
+
+def _repeated(blocks: Bodies, shape: Callable[[int], IntArray], rows: IntArray) -> tuple[IntArray, IntArray]:
+    """A pattern of point numbers for every block, ``shape`` (rows, m) of its corners, and the block of each row."""
+    count, first = np.diff(blocks.offset), np.concatenate(([0], np.cumsum(rows)))
+    owner = np.repeat(np.arange(blocks.count), rows)
+    width = shape(3).shape[1]
+    out = np.empty((len(owner), width), np.int64)
+    for k in np.unique(count):
+        of = np.flatnonzero(count == k)
+        pattern = shape(int(k))
+        place = first[of][:, None] + np.arange(len(pattern))
+        out[place] = pattern + 2 * blocks.offset[of][:, None, None]
+    return out, owner
 
 
 def prism_faces(k: int) -> IntArray:
@@ -141,11 +156,11 @@ def along_edges(points: Array, edges: IntArray, spacing: float) -> tuple[Array, 
 
 def prism_edges(blocks: Bodies) -> tuple[IntArray, IntArray]:
     """Edges of all prisms, as numbers of the points of `prisms`, and the block of each edge."""
-    edges, owner, base = [np.empty((0, 2), np.int64)], [np.empty(0, np.int64)], 0
-    for i, k in enumerate(np.diff(blocks.offset)):
-        a = np.arange(k)
-        ring = np.stack([a, (a + 1) % k], axis=1)
-        edges.append(np.concatenate([ring, ring + k, np.stack([a, a + k], axis=1)]) + base)
-        owner.append(np.full(3 * k, i))
-        base += 2 * k
-    return np.concatenate(edges), np.concatenate(owner)
+    return _repeated(blocks, _edges, 3 * np.diff(blocks.offset))
+
+
+def _edges(k: int) -> IntArray:
+    """Edges of a prism over ``k`` corners: both rims, then from one to the other."""
+    a = np.arange(k)
+    ring = np.stack([a, (a + 1) % k], axis=1)
+    return np.concatenate([ring, ring + k, np.stack([a, a + k], axis=1)])
