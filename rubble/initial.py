@@ -149,9 +149,9 @@ def measure(
         blocks=len(layer.blocks),
         volume=layer.mass / layer.physics.rho_i,
         mass=layer.mass,
-        porosity=pores / (ice + pores),
-        slope=float(np.mean(slopes)),
-        depth=float(max(depths)),
+        porosity=pores / (ice + pores) if ice > 0.0 else float("nan"),
+        slope=float(np.mean(slopes)) if slopes else float("nan"),
+        depth=float(max(depths, default=0.0)),
         time=time,
         calm=calm,
         force=lift,
@@ -171,6 +171,8 @@ def _profile(layer: RubbleLayer, key: int, top: float, step: float = 0.1) -> tup
     z = np.arange(corners[:, 1].min() + step / 2, top, step)
     gx, gz = np.meshgrid(x, z, indexing="ij")
     covered = np.any([_inside(o, gx, gz) for o in outlines], axis=0)
+    if not covered.any():
+        return None  # all that lies there has risen beside the sheet
     solid = np.any([_inside(s, gx, gz) for s in solids], axis=0) if solids else np.zeros_like(covered)
     low = np.where(covered.any(axis=1), z[np.argmax(covered, axis=1)], np.nan)
     pores = ~covered & ~solid & (gz >= low[:, None])
