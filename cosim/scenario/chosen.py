@@ -8,10 +8,7 @@ which whole seconds are multiples, and are never longer than those of thick ice.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from cosim.scenario.model import ScenarioModel
+from typing import Any
 
 WINDOW, SUBSTEP = 0.05, 0.005  #: of ice of 1 m at 9.81 m/s2, and at most [s]
 WAY = 0.1  #: largest part of a cell that the ice drifts in a window
@@ -20,8 +17,8 @@ LEAST = 4  #: sub-steps in a window
 SERIES = tuple(digit * 10.0**power for power in range(-6, 0) for digit in (1, 2, 5))
 
 
-def filled(m: ScenarioModel) -> ScenarioModel:
-    """The model with its window, sub-step and longest step."""
+def filled(m: Any) -> Any:
+    """A scenario's model with its window, sub-step and longest step."""
     unit = math.sqrt(m.ice.thickness / m.water.gravity * 9.81)
     window, substep, longest = m.coupling.window, m.rubble.substep, m.fracture.longest_step
     if window is None:

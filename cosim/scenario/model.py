@@ -35,7 +35,7 @@ class ScenarioModel(Section):
 
     @model_validator(mode="after")
     def _keeps_the_rules(self, info: ValidationInfo) -> ScenarioModel:
-        model = filled(self)
+        model: ScenarioModel = filled(self)
         if info.context == WITHOUT_RULES:
             return model
         if broken := [fault for rule in RULES for fault in rule(model)]:
