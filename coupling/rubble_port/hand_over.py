@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -17,6 +18,8 @@ from rubble.prism import Prism
 #: share of h^2 below which what is left of a trimmed piece counts as crushed: a sliver as long as the ice is thick
 #: would be thinner than a fifth of the overlap that contacts leave alone (0.5 % of h), so no contact would hold it
 SMALLEST = 1e-3
+#: share of mass times (g h)^(1/2) below which a momentum is rest: what is left of it is rounding
+REST = 1e-9
 
 
 class Arrivals:
@@ -39,7 +42,7 @@ class Arrivals:
         still = Start(origin, quaternion_of(axes), np.zeros(3), np.zeros(3))
         plate = layer.try_plate([prism_at(b.polygon, b.y, b.width, density) for b in whole], still)
         left = Momenta.of(fragment, h, plate.position)
-        start, error = _motion(plate, still, left)
+        start, error = _motion(plate, still, left, REST * mass * math.sqrt(self._physics.g * h), h)
         rest = [(trimmed, b) for b in whole if (trimmed := self._trim(layer, b, origin, axes)) is not None]
         if not rest:
             return HandOver(0, mass, mass, error[0], error[1])
@@ -81,11 +84,14 @@ class Arrivals:
         return np.ascontiguousarray(np.linalg.solve(turn, (kept - shift[[0, 2]]).T).T)
 
 
-def _motion(plate: Plate, still: Start, left: Momenta) -> tuple[Start, tuple[float, float]]:
-    """The motion with which a plate has the momenta that left, about its centre, and by how much it misses them."""
+def _motion(plate: Plate, still: Start, left: Momenta, least: float, h: float) -> tuple[Start, tuple[float, float]]:
+    """The motion with which a plate has the momenta that left, about its centre, and by how much it misses them.
+
+    ``least`` momentum that counts as some [N s]; ``h`` thickness [m].
+    """
     r = plate.rotation
     spin = r @ plate.spin @ r.T
     velocity, omega = left.linear / plate.mass, np.asarray(np.linalg.solve(spin, left.angular), np.float64)
     missed = np.abs(plate.mass * velocity - left.linear).sum(), np.abs(spin @ omega - left.angular).sum()
-    error = missed[0] / max(left.scale[0], 1e-9), missed[1] / max(left.scale[1], 1e-9)
+    error = missed[0] / max(left.scale[0], least), missed[1] / max(left.scale[1], least * h)
     return replace(still, velocity=velocity, omega=omega), (float(error[0]), float(error[1]))
