@@ -38,15 +38,16 @@ TOTAL_RGB = (235, 235, 235)
 
 
 def save(recording: Path, out: Path) -> None:
-    """Write a rerun file with pictures, curves and layout."""
+    """Write a rerun file with pictures, curves and layout.
+
+    It is made in memory and written in one go: rerun's own writer waits without end where a disk is full.
+    """
     run = opened(recording)
-    with whole(out, ".rrd") as part:
-        try:
-            with stream() as sink:
-                sink.save(part, default_blueprint=blueprint(run))
-                send(sink, recording, run)
-        except RuntimeError as error:  # rerun's only one
-            raise FailedError(f"{out}: {error}; free space or write elsewhere") from error
+    with whole(out, ".rrd") as part, stream() as sink:
+        made = sink.memory_recording()
+        sink.send_blueprint(blueprint(run))
+        send(sink, recording, run)
+        part.write_bytes(made.drain_as_bytes() or b"")
 
 
 def open_viewer(recording: Path) -> None:
