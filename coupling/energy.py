@@ -38,9 +38,11 @@ def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[st
     terms["handover_elastic_loss"] = sheet["left_elastic"]
     terms["handover_potential_loss"] = sheet["left_foundation"] - rubble.get("born_potential", 0.0)
     terms["handover_kinetic_loss"] = sheet["left_kinetic"] - rubble.get("born_kinetic", 0.0)
-    terms["interface_loss"] = rubble.get("sheet_work", sheet["received_work"]) - sheet["received_work"]
-    if "meeting_work" in rubble:
-        terms["impact_sheet_loss"] += rubble["meeting_work"] - sheet["received_work"]
+    lost = rubble.get("meeting_work", rubble.get("sheet_work", 0.0)) - sheet["received_work"]
+    lockstep = "meeting_work" in rubble
+    terms["interface_loss"] = 0.0 if lockstep else lost
+    if lockstep:
+        terms["impact_sheet_loss"] += lost
     return terms
 
 

@@ -91,7 +91,6 @@ def scheduler_of(p: dict[str, Any], variant: Variant) -> Scheduler:
         "basin_2010_floe_165m",
         [
             "rubble.enabled=false",
-            "coupling.scheme='serial-explicit'",  # a lift that does not answer needs no meetings
             "rubble.initial_volume='0 m^3'",
             f"sheet.nodes=[{p['nodes']}, {p['nodes']}]",
             f"scenario.duration='{p['seconds']} s'",
