@@ -18,7 +18,6 @@ from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
-from coupling.attack import Attack
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, BoolArray, RubbleParticipant, Structure
 from coupling.ledger import Ledger
@@ -176,13 +175,6 @@ def build_measured(scenario: Scenario) -> Measured:
     return Measured(f.fracture_energy, f.crack_friction, beam, concentration, f.layer_strength)
 
 
-def build_attack(scenario: Scenario) -> Attack:
-    """Where forces act on the structure."""
-    columns, d = scenario.rubble.columns_per_section, scenario.sheet.spacing
-    pitch = columns * d
-    return Attack(build_structure(scenario), -scenario.sheet.axis + 0.5 * (pitch - d), pitch)
-
-
 def run_info(scenario: Scenario) -> RunInfo:
     """What stays constant over a run, for observers."""
     s = scenario.sheet
@@ -194,5 +186,4 @@ def run_info(scenario: Scenario) -> RunInfo:
         s.spacing,
         scenario.duration_ns,
         scenario.window_ns,
-        attack=build_attack(scenario),
     )

@@ -43,17 +43,24 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         flexural_strength=flexural_strength(scenario),
         breaking_time=breaking_time(scenario),
     )
-    pitch = r.columns_per_section * grid.d
+    origin, pitch = sections_of(scenario)
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
     domain = Domain(x_max=structure.reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
     return RubblePort(
         structure,
         physics,
         pitch=pitch,
-        origin=grid.y0 + 0.5 * (pitch - grid.d),
+        origin=origin,
         domain=domain,
         threads=r.threads,
     )
+
+
+def sections_of(scenario: Scenario) -> tuple[float, float]:
+    """Y of section 0 and width of the sections of whole node columns [m]."""
+    d = scenario.sheet.spacing
+    pitch = scenario.rubble.columns_per_section * d
+    return -scenario.sheet.axis + 0.5 * (pitch - d), pitch
 
 
 def flexural_strength(scenario: Scenario) -> float:

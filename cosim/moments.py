@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.attack import Attack, PointForces
+from coupling.attack import PointForces, point_forces
 from coupling.interface import Array, Frame
 
 
@@ -27,9 +27,9 @@ class Grip:
         return attack_of(self.weight)
 
 
-def grip_of(frame: Frame, attack: Attack, point: tuple[float, float, float]) -> Grip:
+def grip_of(frame: Frame, point: tuple[float, float, float]) -> Grip:
     """Of a window; ``point`` is that of the moments [m]."""
-    forces = attack.points(frame.contact, frame.blocks)
+    forces = point_forces(frame.contact, frame.blocks)
     return Grip(forces.moments(np.array(point)), weight_of(forces))
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from cosim.scenario.scenario import Scenario
-from coupling.attack import Attack
 from coupling.interface import Array, Frame, IntArray
 
 
@@ -23,7 +22,6 @@ class RunInfo:
     d: float  #: distance of the nodes [m]
     duration_ns: int
     window_ns: int
-    attack: Attack  #: on the structure: where forces act
 
     @property
     def thickness(self) -> float:

@@ -170,7 +170,7 @@ def run_scenario(
         while scheduler.t_ns < scenario.duration_ns:
             frame = scheduler.macro_step()
             _is_finite(frame)
-            result.see(frame, grip_of(frame, info.attack, scenario.moment_point))
+            result.see(frame, grip_of(frame, scenario.moment_point))
             for observer in observers:
                 observer.on_frame(frame)
     _finish(result, scheduler)

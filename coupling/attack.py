@@ -7,11 +7,11 @@ which is left out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.interface import Array, BlockTable, ContactForces, IntArray, Phase, Structure
+from coupling.interface import Array, BlockTable, ContactForces, IntArray, Phase
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,31 +31,14 @@ class PointForces:
         return out
 
 
-@dataclass(frozen=True)
-class Attack:
-    """A structure, and the sections in which blocks meet it: section k is cut at y = origin + k pitch."""
-
-    structure: Structure
-    origin: float  #: [m]
-    pitch: float  #: [m]
-    _last: list[tuple[ContactForces, BlockTable, PointForces]] = field(default_factory=list, compare=False, repr=False)
-
-    def points(self, contact: ContactForces, blocks: BlockTable) -> PointForces:
-        """All forces of a window that are not zero: those of the sheet by node, then those of the blocks.
-
-        Those of the last window are kept: several ask for them.
-        """
-        if not self._last or self._last[0][0] is not contact or self._last[0][1] is not blocks:
-            self._last[:] = [(contact, blocks, self._points(contact, blocks))]
-        return self._last[0][2]
-
-    def _points(self, contact: ContactForces, blocks: BlockTable) -> PointForces:
-        touching = np.flatnonzero(contact.force.any(axis=1))
-        pressing = np.flatnonzero(blocks.load.any(axis=1))
-        of_sheet = np.where(contact.hinged[touching], Phase.ROTATING, Phase.BREAKING)
-        return PointForces(
-            np.concatenate((contact.position[touching], blocks.bearing[pressing])),
-            np.concatenate((-contact.force[touching], blocks.load[pressing])),
-            np.concatenate((of_sheet, blocks.phase[pressing])).astype(np.int64),
-            np.concatenate((np.full(len(touching), -1), blocks.id[pressing])).astype(np.int64),
-        )
+def point_forces(contact: ContactForces, blocks: BlockTable) -> PointForces:
+    """All forces of a window that are not zero: those of the sheet by node, then those of the blocks."""
+    touching = np.flatnonzero(contact.force.any(axis=1))
+    pressing = np.flatnonzero(blocks.load.any(axis=1))
+    of_sheet = np.where(contact.hinged[touching], Phase.ROTATING, Phase.BREAKING)
+    return PointForces(
+        np.concatenate((contact.position[touching], blocks.bearing[pressing])),
+        np.concatenate((-contact.force[touching], blocks.load[pressing])),
+        np.concatenate((of_sheet, blocks.phase[pressing])).astype(np.int64),
+        np.concatenate((np.full(len(touching), -1), blocks.id[pressing])).astype(np.int64),
+    )

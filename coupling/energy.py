@@ -14,7 +14,7 @@ The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.e
   on its nodes, friction apart. An impact that gives more than it takes would be below zero.
 
 While the sheet is served from a long step its terms stand still, all of them, and are booked when the step is done.
-A loss may be negative: the step of the rubble, its correction of overlap, dry tops and the side push add energy.
+A loss may be negative: the step of the rubble, its correction of overlap and dry tops add energy.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ numbers of a row stand side by side in memory, as pymunk's callbacks need it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 Records = NDArray[np.void]  #: (n,) rows with named fields; the name of the dtype says which
+Table = TypeVar("Table", bound=tuple[Any, ...])  #: columns of one length, by name
 Record = Any  #: one row: `numpy.void` in Python, a pointer to the row in a kernel
 
 
@@ -46,3 +47,17 @@ def filled(dtype: np.dtype[np.void], data: object) -> Records:
     out = np.zeros(len(plain), dtype)
     rows(out)[:] = plain
     return out
+
+
+def filled_room(room: Callable[[int], Table], count: int, fill: Callable[[Table], int]) -> Table:
+    """A table of columns that ``fill`` fills, as long as what it finds.
+
+    ``fill`` returns how many rows it found, more than there is room for if so; it is then asked again with room for
+    twice as many. ``count`` rows to begin with.
+    """
+    while True:
+        table = room(count)
+        found = fill(table)
+        if found <= count:
+            return type(table)(*(column[:found] for column in table))
+        count = 2 * found

@@ -17,7 +17,7 @@ from rubble.edges import locate
 from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
 from rubble.plates import times, turn_back
-from rubble.rows import CRUSHES, SHEET, Rows, set_arms
+from rubble.rows import SHEET, Rows, go_on, set_arms
 from rubble.sides import NEAR, apart, directions, outline_of
 from rubble.slices import Pieces, end_along_y
 from rubble.slots import SHEET_SLOT
@@ -74,10 +74,7 @@ def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, bef
             last += 1
         same = last < before and old.point[last].feature == BANK
         same = same and old.point[last].slot_b == s and old.point[last].edge == e
-        point.met = old.point[last].met if same else np.inf
-        point.crushes = 1 if same and old.way[last, 0].impulse >= CRUSHES * old.point[last].most else 0
-        for d in range(3):
-            rows.way[c, d].impulse = old.way[last, d].impulse if same else 0.0
+        go_on(rows, c, old, last if same else -1, np.inf)
         c += 1
     return c
 

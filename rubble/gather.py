@@ -14,7 +14,7 @@ from rubble.cut import nearest
 from rubble.edges import Edges, deeper_on_sheet
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
-from rubble.rows import CRUSHES, ICE, SHEET, STRUCTURE, Rows, set_arms, set_way
+from rubble.rows import ICE, SHEET, STRUCTURE, Rows, go_on, set_arms, set_way
 from rubble.slices import Pieces, Slices
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
@@ -235,10 +235,4 @@ def _first_guess(rows: Rows, start: int, end: int, old: Rows, kept: int, stamp: 
                     met = max(met, was.met)
                     if was.feature == own.feature:
                         at = o
-        if at >= 0:
-            own.met = old.point[at].met
-        else:
-            own.met = met if met >= 0.0 else (0.0 if own.kind == STRUCTURE else np.inf)
-        own.crushes = 1 if at >= 0 and old.way[at, 0].impulse >= CRUSHES * old.point[at].most else 0
-        for d in range(3):
-            rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0
+        go_on(rows, c, old, at, met if met >= 0.0 else (0.0 if own.kind == STRUCTURE else np.inf))

@@ -81,6 +81,19 @@ def speed(way: Record, a: Record, b: Record) -> float:
 
 
 @compiled(nogil=True)
+def go_on(rows: Rows, c: int, old: Rows, at: int, met: float) -> None:
+    """Row c goes on from row ``at`` of the sub-step before; -1: it is new, and counts as having ``met`` so deep [m]."""
+    own = rows.point[c]
+    if at < 0:
+        own.met, own.crushes = met, 0
+    else:
+        was = old.point[at]
+        own.met, own.crushes = was.met, 1 if old.way[at, 0].impulse >= CRUSHES * was.most else 0
+    for d in range(3):
+        rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0
+
+
+@compiled(nogil=True)
 def set_way(way: Record, x: float, y: float, z: float) -> None:
     """A direction."""
     way.x, way.y, way.z = x, y, z

@@ -18,7 +18,7 @@ from rubble.compiled import compiled
 from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
 from rubble.plates import times, turn_back
-from rubble.rows import CRUSHES, ICE, Rows, set_arms, set_way
+from rubble.rows import ICE, Rows, go_on, set_arms, set_way
 from rubble.slices import Pieces, end_along_y
 
 SIDE = -1  #: marks a row of two sides
@@ -37,11 +37,6 @@ class Sides(NamedTuple):
 def side_room(count: int) -> Sides:
     """Room for so many pairs."""
     return Sides(np.zeros((count, 2), np.int64), np.zeros((count, 3)), np.zeros((count, 2, 3)), np.zeros(count))
-
-
-def no_sides() -> Sides:
-    """None."""
-    return side_room(0)
 
 
 @compiled(nogil=True)
@@ -78,10 +73,7 @@ def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, bef
             last += 1
         same = last < before and old.point[last].feature == SIDE
         same = same and old.point[last].slot_a == a and old.point[last].slot_b == b
-        point.met = old.point[last].met if same else np.inf
-        point.crushes = 1 if same and old.way[last, 0].impulse >= CRUSHES * old.point[last].most else 0
-        for d in range(3):
-            rows.way[c, d].impulse = old.way[last, d].impulse if same else 0.0
+        go_on(rows, c, old, last if same else -1, np.inf)
         c += 1
     return c
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray
+from rubble.arrays import Array, IntArray, filled_room
 from rubble.banks import Banks, bank_room, find_banks
 from rubble.books import BOOKS, SHIFT
 from rubble.breaking import Break, Breaking, part
@@ -21,7 +21,7 @@ from rubble.plates import kinetic, momenta
 from rubble.rows import Rows, Surface, grown, room
 from rubble.sections import SectionTable
 from rubble.shore import Yields, edges_of, keep
-from rubble.sides import Sides, find_sides, no_sides, side_room
+from rubble.sides import Sides, find_sides, side_room
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
@@ -88,7 +88,7 @@ class Runner:
             water=self.water,
             hulls=tables.hulls,
             thrust=tables.thrust,
-            sides=no_sides() if self.planar else self._sides(scene, store),
+            sides=side_room(0) if self.planar else self._sides(scene, store),
             banks=bank_room(0) if self.planar else self._banks(scene, store),
             joints=joints,
             loaded=self.breaking.begin(store),
@@ -159,24 +159,19 @@ class Runner:
 
     def _sides(self, scene: Scene, store: Store) -> Sides:
         """Pairs of slices that may meet between two sections."""
-        section = scene.slices.section
+        section, pieces = scene.slices.section, store.tables.pieces
         order = np.argsort(section, kind="stable")
         first = np.searchsorted(section[order], np.arange(len(scene.sections.y) + 1))
-        while True:
-            sides = side_room(self._most_sides)
-            found = find_sides(scene, store.tables.pieces, first, order, sides)
-            if found <= self._most_sides:
-                return Sides(sides.pair[:found], sides.normal[:found], sides.arm[:found], sides.area[:found])
-            self._most_sides = 2 * found
+        sides = filled_room(side_room, self._most_sides, lambda into: find_sides(scene, pieces, first, order, into))
+        self._most_sides = max(self._most_sides, len(sides.area))
+        return sides
 
     def _banks(self, scene: Scene, store: Store) -> Banks:
         """Slices that may meet a side of the sheet."""
-        while True:
-            banks = bank_room(self._most_banks)
-            found = find_banks(scene, store.tables.pieces, self.physics.thickness, banks)
-            if found <= self._most_banks:
-                return Banks(**{name: column[:found] for name, column in banks._asdict().items()})
-            self._most_banks = 2 * found
+        pieces, h = store.tables.pieces, self.physics.thickness
+        banks = filled_room(bank_room, self._most_banks, lambda into: find_banks(scene, pieces, h, into))
+        self._most_banks = max(self._most_banks, len(banks.area))
+        return banks
 
     def _surface(self) -> Surface:
         p = self.physics

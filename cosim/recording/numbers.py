@@ -13,7 +13,7 @@ from coupling.interface import Event, Frame
 
 def load(info: RunInfo, frame: Frame) -> bytes:
     """`cosim.Load`: totals and the three phases of force [N] and moment [N m], and where the load attacks [m]."""
-    grip = grip_of(frame, info.attack, info.scenario.moment_point)
+    grip = grip_of(frame, info.scenario.moment_point)
     values = {
         messages.LOAD_FIELDS: (frame.load.sum(axis=0), frame.load.ravel()),
         messages.MOMENT_FIELDS: (grip.moment.sum(axis=0), grip.moment.ravel()),

@@ -23,7 +23,7 @@ from cosim.recording.planes import (
     unpack_bits,
     unpack_numbers,
 )
-from coupling.attack import PointForces
+from coupling.attack import PointForces, point_forces
 from coupling.interface import Array, Frame, IntArray, SheetView
 
 SHEET, BLOCKS, CONTACT = "/ice/sheet", "/rubble/blocks", "/load/contact"
@@ -109,7 +109,7 @@ def blocks(info: RunInfo, frame: Frame) -> bytes:
 
 def contact(info: RunInfo, frame: Frame) -> bytes:
     """`cosim.Contact`: forces of the ice on the structure [N] at their places [m], of nodes (block -1) and blocks."""
-    forces, quantum = info.attack.points(frame.contact, frame.blocks), quantum_of(info.thickness)
+    forces, quantum = point_forces(frame.contact, frame.blocks), quantum_of(info.thickness)
     message = messages.Contact(
         phase=forces.phase.tolist(),
         block=forces.block.tolist(),

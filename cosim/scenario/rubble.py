@@ -44,4 +44,4 @@ class Rubble(Section):
     #: ice that has settled in front of the structure before the run [m^3]
     initial_volume: Annotated[VolumeOrZero, Limits("0 m^3", "1e9 m^3", "200 m^3")] = 0.0
     initial_porosity: float = Field(0.3, ge=0.12, le=0.6, examples=[0.3])  #: pore share of that rubble
-    threads: Annotated[int, Field(ge=1, le=1024)] = 1  #: over the sections; changes no bit of the result
+    threads: Annotated[int, Field(ge=1, le=1024)] = 1  #: without effect: all contacts are solved together, on one

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from coupling.interface import SheetEdge, SimulationError
+from coupling.interface import SheetEdge
+from coupling.rubble_port.failing import failing
 from coupling.rubble_port.port import RubblePort
 from rubble.initial import Pile, rest, settle
 
@@ -39,10 +40,8 @@ def _hold(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
 
 
 def _settled(port: RubblePort, pile: Callable[[], Pile]) -> Pile:
-    try:
+    with failing():
         settled = pile()
-    except RuntimeError as error:
-        raise SimulationError(str(error)) from error
     port.take_forces()
     return settled
 

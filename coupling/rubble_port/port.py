@@ -21,10 +21,10 @@ from coupling.interface import (
     Restore,
     SheetEdge,
     SheetForces,
-    SimulationError,
     Structure,
 )
 from coupling.rubble_port.events import told
+from coupling.rubble_port.failing import failing
 from coupling.rubble_port.hand_over import Arrivals
 from rubble import snapshot
 from rubble.cut import Bearing, Cut, faceted
@@ -114,17 +114,13 @@ class RubblePort:
 
     def meet(self, nodes: Array) -> Array:
         """One sub-step against the nodes of the edges; forces on them (m, 3) [N]."""
-        try:
+        with failing():
             return self.layer.meet(nodes)
-        except RuntimeError as error:
-            raise SimulationError(str(error)) from error
 
     def end(self) -> None:
         """The window ends."""
-        try:
+        with failing():
             self.layer.end()
-        except RuntimeError as error:
-            raise SimulationError(str(error)) from error
         self._take_stock()
 
     def advance(self, window_ns: int) -> None:
@@ -132,10 +128,8 @@ class RubblePort:
         self._crushed, n = self.layer.crushed.mass, round(window_ns / NS / self.physics.substep)
         yields = self._compliance / (n * self.physics.substep) ** 2  # see `rubble.sheet`
         self.layer.set_yields(list(self._edges), yields)
-        try:
+        with failing():
             self.layer.advance(n)
-        except RuntimeError as error:
-            raise SimulationError(str(error)) from error
         self._take_stock()
 
     def _take_stock(self) -> None:

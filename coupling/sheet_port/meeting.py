@@ -39,10 +39,9 @@ class Meeting:
         self.work = 0.0  #: of the forces in this window, in the fixed frame [J]
         self.answer: Callable[[], SheetForces] = SheetForces.none  #: the rubble's sub-step, forces in it
 
-    @property
-    def force(self) -> Array:
-        """Forces since the last meeting, (n, 3) [N]."""
-        return np.column_stack((self.load.force_u, self.load.force_q[:, 0]))
+    def force(self, nodes: IntArray) -> Array:
+        """Forces on nodes since the last meeting, (k, 3) [N]."""
+        return np.column_stack((self.load.force_u[nodes], self.load.force_q[nodes, 0]))
 
     def meet(self, t: float) -> None:
         """The rubble's sub-step from time t [s] on."""
@@ -68,11 +67,11 @@ class Meeting:
     def note(self) -> None:
         """Books the work of the forces since the last meeting; the sheet is where its state says."""
         way = self._motion.position(self._nodes) - self._place
-        self.work += float((self.force[self._nodes] * way).sum())
+        self.work += float((self.force(self._nodes) * way).sum())
         self._place = self._place + way
 
     def nodes(self, nodes: IntArray) -> Array:
         """Nodes as the rubble meets them (m, 11): place x, z; velocity; gain; lightness, each x, y, z."""
         v, light = self._motion.velocities(nodes), self._lightness[nodes]
-        gain = v - self._velocity[nodes] - self.every * self.force[nodes] * light
+        gain = v - self._velocity[nodes] - self.every * self.force(nodes) * light
         return np.column_stack((self._motion.position(nodes)[:, ::2], v, gain, light))

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cosim.build import build_attack
 from cosim.observer import RunInfo
 from cosim.scenario.scenario import Scenario
 from coupling.interface import BlockTable, Event, Frame, Phase, SheetView
@@ -39,7 +38,6 @@ def run_info(scenario: Scenario) -> RunInfo:
         scenario.sheet.spacing,
         scenario.duration_ns,
         scenario.window_ns,
-        attack=build_attack(scenario),
     )
 
 

@@ -9,12 +9,10 @@ from threadpoolctl import threadpool_limits
 import cosim.build
 from cosim.moments import attack_of, grip_of, weight_of
 from cosim.scenario.loading import load_scenario
-from coupling.attack import Attack, PointForces
+from coupling.attack import PointForces, point_forces
 from coupling.interface import BlockTable, ContactForces, Phase
-from coupling.structure import cone, plane_slope
+from coupling.structure import cone
 
-SLOPE = plane_slope(np.pi / 4, top=5.0, toe_depth=30.0, breaking="downward")
-ON_SLOPE = Attack(SLOPE, 0.0, 1.0)
 ORIGIN = np.zeros(3)
 
 
@@ -37,7 +35,7 @@ def test_forces_of_sheet_and_blocks_in_one_table():
         np.array([[-2.0, 0, -1], [0, 0, 0], [-3.0, 0, 0]]),
         np.array([False, False, True]),
     )
-    found = ON_SLOPE.points(contact, block([[-1, -3], [1, -3], [1, -1], [-1, -1]], load=(4.0, 0.0, 4.0), number=9))
+    found = point_forces(contact, block([[-1, -3], [1, -3], [1, -1], [-1, -1]], load=(4.0, 0.0, 4.0), number=9))
     assert found.force[:, 0].tolist() == [2.0, 3.0, 4.0]
     assert found.phase.tolist() == [Phase.BREAKING, Phase.ROTATING, Phase.SLIDING]
     assert found.block.tolist() == [-1, -1, 9]
@@ -70,19 +68,19 @@ def test_parallel_forces_have_no_moment_about_the_point_of_attack():
 
 @pytest.fixture(scope="module")
 def windows():
-    """400 windows of an encounter with a cone, all phases in them, and where its forces act."""
+    """400 windows of an encounter with a cone, all phases in them, and the cone."""
     scenario = load_scenario("first_cone")
     with threadpool_limits(1):
         s = cosim.build.build(scenario)
-        return cosim.build.build_attack(scenario), [s.macro_step() for _ in range(400)]
+        return cosim.build.build_structure(scenario), [s.macro_step() for _ in range(400)]
 
 
 def test_moments_close_with_forces_and_places(windows):
     """Forces add up to the load of every phase; a shift of the point adds its arm times that load; both to 1e-12."""
-    attack, frames = windows
+    _, frames = windows
     point, loaded = np.array([3.0, -2.0, -20.0]), {p: 0 for p in Phase}
     for frame in frames:
-        found = attack.points(frame.contact, frame.blocks)
+        found = point_forces(frame.contact, frame.blocks)
         size = max(np.abs(found.force).sum(), 1e-300)
         for phase in Phase:
             mine = found.phase == phase
@@ -93,27 +91,27 @@ def test_moments_close_with_forces_and_places(windows):
             assert np.abs(found.moments(ORIGIN)[phase] - by_hand).max() <= 1e-12 * 20.0 * size
             loaded[phase] += bool(frame.load[phase].any())
         shifted = found.moments(ORIGIN) - np.cross(point, frame.load)
-        assert np.abs(grip_of(frame, attack, tuple(point)).moment - shifted).max() <= 1e-12 * 40.0 * size
+        assert np.abs(grip_of(frame, tuple(point)).moment - shifted).max() <= 1e-12 * 40.0 * size
     assert min(loaded.values()) > 30
 
 
 def test_a_force_that_is_left_out_is_found(windows):
     """The twin whose hinged nodes or blocks are forgotten does not close."""
-    attack, frames = windows
+    _, frames = windows
     frame = next(f for f in reversed(frames) if f.blocks.load.any())
     none = replace(frame.blocks, load=np.zeros_like(frame.blocks.load))
-    found = attack.points(frame.contact, none)
+    found = point_forces(frame.contact, none)
     assert np.abs(found.force.sum(axis=0) - frame.load.sum(axis=0)).max() > 1e-3 * np.abs(frame.load).max()
 
 
 def test_blocks_act_on_the_face(windows):
     """The places of their forces lie on the structure: a chord of the cone at most within it, and never before it."""
-    attack, frames = windows
+    structure, frames = windows
     gaps = []
     for frame in frames:
-        found = attack.points(frame.contact, frame.blocks)
+        found = point_forces(frame.contact, frame.blocks)
         x, y, z = found.position[found.block >= 0].T
-        gaps += [((attack.structure.face_x(y, z) - x) * -attack.structure.normal(y, z)[:, 0])]
+        gaps += [((structure.face_x(y, z) - x) * -structure.normal(y, z)[:, 0])]
     gap = np.concatenate(gaps)
     assert len(gap) > 500
     assert np.isfinite(gap).all()

@@ -35,11 +35,11 @@ def along_waterline(scene: Scene, pictures: Sequence[Picture]) -> tuple[Array, A
     if not places:
         return np.empty(0), np.empty(0), np.empty((0, 0))
     low, high = (scene.section_at(float(end)) for end in (np.concatenate(places).min(), np.concatenate(places).max()))
-    pitch, count = scene.attack.pitch, high - low + 1
+    pitch, count = scene.pitch, high - low + 1
     edges = scene.centre(low) + pitch * (np.arange(count + 1) - 0.5)
     load = np.zeros((len(pictures), count, 3))
     for row, picture in zip(load, pictures, strict=True):
-        slices = np.rint((picture.forces.position[:, 1] - scene.attack.origin) / pitch).astype(int) - low
+        slices = np.rint((picture.forces.position[:, 1] - scene.origin) / pitch).astype(int) - low
         np.add.at(row, np.clip(slices, 0, count - 1), picture.forces.force)
     size: Array = np.sqrt((load**2).sum(axis=2)) / pitch
     return np.asarray(edges, np.float64), np.array([p.t_ns / NS for p in pictures]), size

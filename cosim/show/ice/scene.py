@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosim.analysis.run_data import RunData
-from cosim.build import build_attack
+from cosim.build import build_structure
+from cosim.build_rubble import sections_of
 from cosim.errors import InputError
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.scenario import Scenario
-from coupling.attack import Attack
 from coupling.interface import Array, Structure
 
 TOWER_RADIUS, TOWER_HEIGHT = 0.35, 1.2  #: of a tower that is drawn and not modelled, per radius at the top
@@ -23,22 +23,19 @@ DEEPEST = 12.0  #: thicknesses of the ice below the water to which a structure i
 class Scene:
     """Around the ice of a run."""
 
-    attack: Attack
+    structure: Structure  #: what the ice meets
+    origin: float  #: y of section 0 [m]
+    pitch: float  #: width of a section [m]
     thickness: float  #: of the ice [m]
     width: float  #: of the floe [m]
 
-    @property
-    def structure(self) -> Structure:
-        """What the ice meets."""
-        return self.attack.structure
-
     def section_at(self, y: float) -> int:
         """Number of the section that holds y."""
-        return round((y - self.attack.origin) / self.attack.pitch)
+        return round((y - self.origin) / self.pitch)
 
     def centre(self, section: int) -> float:
         """Y of a section's middle [m]."""
-        return self.attack.origin + self.attack.pitch * section
+        return self.origin + self.pitch * section
 
     def bottom(self) -> float:
         """Lowest point of the structure in pictures [m]."""
@@ -82,5 +79,5 @@ def scene_of(run: RunData) -> Scene:
         model = ScenarioModel.model_validate(raw)
     except (KeyError, ValueError) as error:
         raise InputError(f"{run.name}: its scenario cannot be read by this version; run it again") from error
-    attack = build_attack(Scenario(run.name, text, raw, model))
-    return Scene(attack, model.ice.thickness, model.sheet.width)
+    scenario = Scenario(run.name, text, raw, model)
+    return Scene(build_structure(scenario), *sections_of(scenario), model.ice.thickness, model.sheet.width)

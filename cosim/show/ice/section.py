@@ -76,7 +76,7 @@ def _draw_forces(ax: Axes, picture: Picture, scene: Scene, key: int) -> None:
         return
     text = f"longest arrow of all sections {scale_of((largest,), 'N').labelled(largest)}"
     ax.text(0.02, 0.02, text, transform=ax.transAxes, fontsize=7, color=FORCE, zorder=9)
-    near = np.abs(forces.position[:, 1] - scene.centre(key)) <= 0.5 * scene.attack.pitch * (1 + 1e-6)
+    near = np.abs(forces.position[:, 1] - scene.centre(key)) <= 0.5 * scene.pitch * (1 + 1e-6)
     for place, force in zip(forces.position[near], forces.force[near], strict=True):
         end = place[[0, 2]] + force[[0, 2]] / largest * ARROW * scene.thickness
         style = {"arrowstyle": "-|>", "color": FORCE, "lw": 1.4, "shrinkA": 0, "shrinkB": 0}

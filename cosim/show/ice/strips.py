@@ -53,7 +53,7 @@ def _section(scene: Scene, picture: Picture, section: int) -> list[Strips]:
     ice = [closed(corners) for corners in sheet_parts(picture.sheet, scene.centre(section), scene.thickness)]
     mine = np.flatnonzero(b.section == section)
     blocks = [closed(b.outline[b.offset[k] : b.offset[k + 1]]) for k in mine]
-    near = np.abs(forces.position[:, 1] - scene.centre(section)) <= 0.5 * scene.attack.pitch * (1 + 1e-6)
+    near = np.abs(forces.position[:, 1] - scene.centre(section)) <= 0.5 * scene.pitch * (1 + 1e-6)
     largest = max(float(np.linalg.norm(forces.force[:, [0, 2]], axis=1).max(initial=0.0)), 1e-30)
     ends = forces.position[:, [0, 2]] + forces.force[:, [0, 2]] / largest * 3.0 * scene.thickness
     arrows = [np.array([forces.position[k, [0, 2]], ends[k]]) * DOWN for k in np.flatnonzero(near)]
