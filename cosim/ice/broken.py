@@ -19,7 +19,7 @@ from scipy import optimize, sparse
 from cosim.errors import InputError
 from cosim.ice.columns import numbers, read_table
 from cosim.ice.fields import middles
-from cosim.recording.reader import read_run, recorded_pictures
+from cosim.recording.reader import last_sheet, read_run
 from coupling.interface import Array, BoolArray, IntArray
 from lattice.cracks.hinges import DEEP
 from lattice.cracks.sheet import CrackingSheet
@@ -96,9 +96,7 @@ def _tabled(path: Path, grid: Grid) -> tuple[BoolArray, BoolArray, Array]:
 def _recorded(path: Path, grid: Grid) -> tuple[BoolArray, BoolArray, Array]:
     """Of the last picture of a recording: nodes that are not there, cells cracked deeper than to the middle."""
     run = read_run(path)  # refuses what is no recording
-    last = None
-    for picture in recorded_pictures(path):
-        last = picture.sheet
+    last = last_sheet(path)
     if last is None:
         raise InputError(f"{path}: holds no picture of the ice; record a run with recording.every below its duration")
     spacing = float(run.metadata["spacing_m"])

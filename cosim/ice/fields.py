@@ -21,13 +21,11 @@ from scipy.special import gamma
 from cosim.errors import InputError
 from cosim.ice.columns import numbers, read_table
 from cosim.scenario.scenario import Scenario
-from cosim.scenario.variation import FieldSection
+from cosim.scenario.variation import FIELDS, FieldSection
 from coupling.interface import Array
 from lattice.grid import Grid
 from lattice.varied import Varied
 
-#: field of the scenario's [ice]: column of a file. Their order makes their seeds
-FIELDS = {"strength_field": "strength", "thickness_field": "thickness", "modulus_field": "youngs_modulus"}
 EDGE = 0.51  #: of a cell: a file may end so far from the middle of a cell outside of its points
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,10 +16,10 @@ from cosim.analysis.run_data import RunData
 from cosim.recording import metadata as meta
 from cosim.recording.channels import CHANNELS
 from cosim.recording.decoding import DATA_TOPICS, Stored, decode
-from cosim.recording.pictures import TOPICS, Picture, pictures
+from cosim.recording.pictures import READ, SHEET, TOPICS, Picture, pictures
 from cosim.recording.records import DamageError, RecordingError, Records
 from cosim.recording.scenes import triangles_of
-from coupling.interface import Array, IntArray
+from coupling.interface import Array, IntArray, SheetView
 
 T = TypeVar("T")
 STRUCTURE = "/structure/scene"
@@ -46,6 +47,12 @@ def messages(path: str | Path, topics: Sequence[str]) -> Iterator[Stored]:
 def recorded_pictures(path: str | Path) -> Iterator[Picture]:
     """What the recorded frames show, in order; RecordingError if one cannot be read."""
     yield from _read(Path(path), pictures(messages(path, TOPICS)))
+
+
+def last_sheet(path: str | Path) -> SheetView | None:
+    """The sheet of the last picture, None if there is none; RecordingError if it cannot be read."""
+    last = deque(messages(path, (SHEET,)), maxlen=1)
+    return next(_read(Path(path), (READ[SHEET](data) for _, _, data in last)), None)
 
 
 def recorded_structure(path: str | Path) -> tuple[Array, IntArray]:

@@ -19,6 +19,7 @@ from cosim.scenario.errors import ScenarioError
 from cosim.scenario.scenario import Scenario
 from cosim.scenario.text import complete, to_toml
 from cosim.scenario.units import Unit, dimensions, split
+from cosim.scenario.variation import FIELDS
 
 DIGITS = Context(prec=50)
 NS = 10**9
@@ -91,8 +92,7 @@ def froude_copy(scenario: Scenario, factor: Fraction) -> Copy:
 
 def _files(scenario: Scenario) -> list[tuple[str, str]]:
     """Keys that name files of places on the sheet, and these files."""
-    fields = ("strength_field", "thickness_field", "modulus_field")
-    named = [(f"ice.{f}.file", field.file) for f in fields if (field := getattr(scenario.ice, f)) is not None]
+    named = [(f"ice.{f}.file", field.file) for f in FIELDS if (field := getattr(scenario.ice, f)) is not None]
     return [(key, name) for key, name in (*named, ("sheet.broken", scenario.sheet.broken)) if name]
 
 

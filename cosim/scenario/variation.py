@@ -10,6 +10,9 @@ from cosim.scenario.limits import Limits
 from cosim.scenario.section import Section
 from cosim.scenario.units import LengthOrZero
 
+#: fields of [ice] that vary: column of a file. Their order makes their seeds
+FIELDS = {"strength_field": "strength", "thickness_field": "thickness", "modulus_field": "youngs_modulus"}
+
 Variation = Annotated[float, Field(ge=0, le=1)]
 
 

@@ -12,10 +12,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from cosim.analysis.reference import Reference, parse_reference
 from cosim.errors import InputError
-from cosim.ice.fields import FIELDS
 from cosim.scenario.files import read_toml
 from cosim.scenario.loading import checked, read_scenario
 from cosim.scenario.scenario import Scenario
+from cosim.scenario.variation import FIELDS
 from cosim.show.check import fact_lines, judged
 from cosim.show.console import as_line, stderr
 from cosim.show.scale import scale_of

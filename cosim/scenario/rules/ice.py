@@ -10,6 +10,7 @@ from pydantic_core import PydanticCustomError
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.names import strengths_of
 from cosim.scenario.section import fault
+from cosim.scenario.variation import FIELDS
 
 Faults = Iterator[PydanticCustomError]
 
@@ -58,7 +59,7 @@ def criteria_have_their_strengths(m: Any) -> Faults:
 
 def fields_are_drawn_or_read(m: Any) -> Faults:
     """Each field of varying ice has either a variation or a file, and is not so wide that its distribution is none."""
-    for name in ("strength_field", "thickness_field", "modulus_field"):
+    for name in FIELDS:
         field = getattr(m.ice, name)
         if field is not None and (field.variation is None) == (not field.file):
             yield fault(f"ice.{name}.variation", "give either a variation or a file, for example variation = 0.2")
