@@ -44,10 +44,11 @@ def bank_room(count: int) -> Banks:
 
 
 @compiled(nogil=True)
-def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, before: int) -> int:
+def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
     """Adds a row for each plate that overlaps a side of the sheet; returns the number of rows, -1: there is no room.
 
     ``old`` has ``before`` rows; those of banks stand behind those of sides, in the same order.
+    ``cut``: slices are new.
     """
     plates, edges, last, c = scene.plates, scene.edges, 0, found
     while last < before and old.point[last].feature != BANK:
@@ -74,7 +75,7 @@ def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, bef
             last += 1
         same = last < before and old.point[last].feature == BANK
         same = same and old.point[last].slot_b == s and old.point[last].edge == e
-        go_on(rows, c, old, last if same else -1, np.inf)
+        go_on(rows, c, old, last if same else -1, 0.0, cut)
         c += 1
     return c
 

@@ -50,6 +50,7 @@ class Scene(NamedTuple):
     pieces: Pieces
     strength: float  #: greatest pressure of a contact times the sub-step [Pa s]
     shortest: float  #: least length of a contact [m]
+    cut: int  #: number of the sub-step in which the slices are new
 
 
 @compiled(nogil=True)
@@ -107,7 +108,7 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
             if count == start:
                 continue
             _law(scene, rows, start, count)
-            _first_guess(rows, start, count, old, integer(arbiter + layout.data), stamp)
+            _first_guess(rows, start, count, old, integer(arbiter + layout.data), stamp, stamp == scene.cut)
             set_integer(arbiter + layout.data, (stamp << 24) | (start + 1))
     return count
 
@@ -174,11 +175,13 @@ def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple
     """
     sections, slices, pieces = scene.sections, scene.slices, scene.pieces
     faces = sections.faces[sections.offset[section] : sections.offset[section + 1]]
-    face, y = faces[nearest(faces, point.x, point.z)], point.y
-    i, k = slices.piece[point.slot_b], point.b
+    face, r, b = faces[nearest(faces, point.x, point.z)], scene.plates.rotation[point.b], slices.anchor[point.slot_b]
+    i, y = slices.piece[point.slot_b], scene.plates.position[point.b, 1]
     if pieces.range[i, 0] == pieces.range[i, 1]:
-        y = scene.plates.position[k, 1] + scene.plates.rotation[k, 1, 1] * pieces.y[i]
-        y = min(max(y, point.y - 0.5 * scene.pitch), point.y + 0.5 * scene.pitch)
+        y += r[1, 1] * pieces.y[i]
+    else:
+        y += r[1, 0] * b[0] + r[1, 1] * b[1] + r[1, 2] * b[2]
+    y = min(max(y, point.y - 0.5 * scene.pitch), point.y + 0.5 * scene.pitch)
     radius = np.hypot(point.x, point.y)
     least = max(radius, 1e-9) / STEEPEST
     x, shift = point.x, -face.constant * (y - point.y)
@@ -223,16 +226,16 @@ def _law(scene: Scene, rows: Rows, start: int, end: int) -> None:
 
 
 @compiled(nogil=True)
-def _first_guess(rows: Rows, start: int, end: int, old: Rows, kept: int, stamp: int) -> None:
-    """Impulses of the same points one sub-step ago; how deep a new point has met is as at the others of its pair."""
+def _first_guess(rows: Rows, start: int, end: int, old: Rows, kept: int, stamp: int, cut: bool) -> None:
+    """Impulses of the same points one sub-step ago; a new point has as much to give back as the others of its pair."""
     first = (kept & 0xFFFFFF) - 1 if kept >> 24 == stamp - 1 else -1
     for c in range(start, end):
-        own, at, met = rows.point[c], -1, -1.0
+        own, at, owed = rows.point[c], -1, 0.0
         if first >= 0:
             for o in range(first, min(first + 2, old.point.shape[0])):
                 was = old.point[o]
                 if was.slot_a == own.slot_a and was.slot_b == own.slot_b:
-                    met = max(met, was.met)
+                    owed = max(owed, was.owed)
                     if was.feature == own.feature:
                         at = o
-        go_on(rows, c, old, at, met if met >= 0.0 else (0.0 if own.kind == STRUCTURE else np.inf))
+        go_on(rows, c, old, at, owed, cut)

@@ -20,18 +20,19 @@ ICE, STRUCTURE, SHEET, JOINT = 0, 1, 2, 3  #: kinds of rows
 KINDS = ("ice", "structure", "sheet")
 GIVES_WAY = 20.0  #: time in which ice that has met deep in other ice comes apart [s]
 CRUSHES = 1.0 - 1e-9  #: share of the greatest impulse from which a contact crushes
+SAME_WAY = 0.99  #: cosine between the normals of a point before and after a sub-step, below which it is another one
 HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 
 #: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
-#: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left [m]; plates a and b;
-#: section whose sheet is end a, else -1; kind, see above; slices a and b, and which point of theirs it is; whether
-#: it crushed in the sub-step before; of a sheet
+#: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left, and overlap beyond it,
+#: which is to be taken out [m]; plates a and b; section whose sheet is end a, else -1; kind, see above; slices a and b,
+#: and which point of theirs it is; whether it crushed in the sub-step before, and whether it is found anew; of a sheet
 #: the nodes before and behind the point, the weight of the one before, and the height of the line of nodes over the
 #: point by their distance
 POINT = record(
-    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met", "weight", "lever"),
-    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature", "crushes", "front", "rear"),
+    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met", "owed", "weight", "lever"),
+    integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature", "crushes", "anew", "front", "rear"),
 )
 #: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit
 #: of relative speed moves [kg]; impulse [N s]; speed of b against a that it goes for [m/s]
@@ -81,14 +82,18 @@ def speed(way: Record, a: Record, b: Record) -> float:
 
 
 @compiled(nogil=True)
-def go_on(rows: Rows, c: int, old: Rows, at: int, met: float) -> None:
-    """Row c goes on from row ``at`` of the sub-step before; -1: it is new, and counts as having ``met`` so deep [m]."""
-    own = rows.point[c]
-    if at < 0:
-        own.met, own.crushes = met, 0
-    else:
-        was = old.point[at]
-        own.met, own.crushes = was.met, 1 if old.way[at, 0].impulse >= CRUSHES * was.most else 0
+def go_on(rows: Rows, c: int, old: Rows, at: int, owed: float, cut: bool) -> None:
+    """Row c goes on from row ``at`` of the sub-step before; -1: it is a new point and has ``owed`` to give back [m].
+
+    A point is found anew where it is new, where the slices have been ``cut`` anew and where its normal is another one.
+    """
+    own, n = rows.point[c], rows.way[c, 0]
+    own.owed, own.anew, own.crushes = owed, 1, 0
+    if at >= 0:
+        was, m = old.point[at], old.way[at, 0]
+        own.met, own.owed = was.met, was.owed
+        own.crushes = 1 if max(m.impulse, was.shift) >= CRUSHES * was.most else 0
+        own.anew = 1 if cut or n.x * m.x + n.y * m.y + n.z * m.z < SAME_WAY else 0
     for d in range(3):
         rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0
 
@@ -137,9 +142,11 @@ def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
 def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surface, dt: float) -> None:
     """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step.
 
-    Pieces of ice that two planes do not both see may be found deep in each other when one of them comes into a plane.
-    They have met in between. To push them apart would lift ice by as much as they overlap; they may stay as deep as
-    they have met and get no deeper. Where ice crushes, the overlap is crushed ice and nothing pushes it out either.
+    What a contact gives back is the overlap into which its ends have moved. Pieces of ice that two planes do not both
+    see may be found deep in each other when one of them comes into a plane; a slice that is cut anew, or pushed along
+    another of its faces, is found deeper or less deep at once. They have met in between: to push them apart would lift
+    ice by as much as they overlap. They may stay as deep as they have met and get no deeper. Where ice crushes, the
+    overlap is crushed ice and nothing pushes it out either.
     """
     motion, nodes, moves = plates.motion, edges.nodes, edges.motion
     for c in range(count):
@@ -154,5 +161,11 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
         point.mu = mu
         n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
         over = max(point.depth - surface.slop, 0.0)
-        point.met = over if point.crushes else min(point.met, over) * (1.0 - dt / GIVES_WAY)
-        point.shift_speed = surface.bias * (over - point.met) / dt
+        if point.anew:
+            both = u + speed(n, plates.shift[point.a], plates.shift[point.b])
+            point.met = max(over - point.owed - dt * max(-both, 0.0), 0.0)
+        point.met = over if point.crushes else min(point.met, over)
+        if point.kind == ICE:
+            point.met *= 1.0 - dt / GIVES_WAY
+        point.owed = over - point.met
+        point.shift_speed = surface.bias * point.owed / dt

@@ -40,10 +40,11 @@ def side_room(count: int) -> Sides:
 
 
 @compiled(nogil=True)
-def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, before: int) -> int:
+def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
     """Adds a row for each pair of sides that overlap; returns the number of rows, -1 if there is no room.
 
     ``old`` has ``before`` rows; those of sides stand behind those of the sections, in the order of the pairs.
+    ``cut``: slices are new.
     """
     plates, last = scene.plates, 0
     while last < before and old.point[last].feature != SIDE:
@@ -73,7 +74,7 @@ def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, bef
             last += 1
         same = last < before and old.point[last].feature == SIDE
         same = same and old.point[last].slot_a == a and old.point[last].slot_b == b
-        go_on(rows, c, old, last if same else -1, np.inf)
+        go_on(rows, c, old, last if same else -1, 0.0, cut)
         c += 1
     return c
 

@@ -64,13 +64,14 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         _move_sheet(edges, dt)
         find_pairs(scene)
         stamp = sums.counted[1] + 1
+        cut = stamp == scene.cut
         rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
         found = gather(scene, rows, old, stamp)
         if found < 0:
             return int(found)
-        contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0])
+        contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0], cut)
         if contacts >= 0:
-            contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0])
+            contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0], cut)
         found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
         if found < 0:
             return NO_ROOM

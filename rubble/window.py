@@ -155,6 +155,7 @@ class Runner:
             pieces=store.tables.pieces,
             strength=strength,
             shortest=shortest,
+            cut=int(self._counted[1]) + 1,
         )
 
     def _sides(self, scene: Scene, store: Store) -> Sides:

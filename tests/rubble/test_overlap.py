@@ -1,0 +1,60 @@
+"""Overlap: what a contact gives back is what its ends have moved into, and no harder than the ice could push."""
+
+import numpy as np
+import pytest
+
+from rubble.cut import plane
+from rubble.layer import RubbleLayer
+from rubble.physics import RubblePhysics
+from rubble.piece import Slab
+from rubble.rows import STRUCTURE
+from rubble.solver import solve
+
+WIDTH, H, LENGTH = 2.0, 3.0, 6.0
+RIGHT = np.array([(0.0, -50.0), (10.0, -50.0), (10.0, 50.0), (0.0, 50.0)])
+LEFT = RIGHT - np.array([10.0 + LENGTH - 0.2, 0.0])  #: 0.2 m too near for a block between both
+ABOVE = 100.0  #: where blocks are made, as none is made inside of a wall [m]
+
+
+def beside(depth, speed=0.0, walls=(RIGHT,), **options):
+    """A block without weight or water that stands so deep in the wall and moves towards it."""
+    physics = RubblePhysics(rho_i=900.0, rho_w=1e-9, g=0.0, thickness=H, restitution=0.0, **options)
+    layer = RubbleLayer(physics, WIDTH, solids=lambda y: plane(walls))
+    box = np.array([(-LENGTH, -H / 2), (0.0, -H / 2), (0.0, H / 2), (-LENGTH, H / 2)]) + np.array([0.0, ABOVE])
+    layer.add_block(0, Slab(box, np.array([-LENGTH, 0.0]), np.array([WIDTH]), 900.0, 0.0), velocity=(speed, 0.0))
+    layer.store.plates.position[0] += (depth, 0.0, -ABOVE)
+    return layer
+
+
+def depth_of(layer):
+    return float(layer.block(0).outline[:, 0].max())
+
+
+def test_overlap_that_is_found_stays_and_costs_nothing():
+    layer = beside(0.3)
+    layer.advance(200)
+    assert depth_of(layer) == pytest.approx(0.3, abs=1e-9)
+    assert float(layer.runner.books["correction"][0]) == 0.0
+    layer.store.plates.position[0, 0] += 0.1  # as a slice that is cut anew is found deeper
+    layer.advance(200)
+    assert depth_of(layer) == pytest.approx(0.4, abs=1e-9)
+
+
+def test_overlap_that_was_moved_into_is_given_back():
+    layer = beside(-0.01, speed=20.0)
+    layer.advance(1)
+    assert depth_of(layer) > 0.08
+    layer.advance(200)
+    assert depth_of(layer) < 1.1 * layer.physics.slop
+
+
+@pytest.mark.parametrize(("most", "held"), [(1e3, True), (np.inf, False)])
+def test_a_shift_is_no_stronger_than_the_ice(most, held):
+    """A block in a gap that is too narrow: both walls push it out, in vain; without a bound by ever more."""
+    layer = beside(0.1, walls=(RIGHT, LEFT))
+    layer.advance(1)
+    rows, count = layer.runner._rows[int(layer.runner._counted[1]) % 2], layer.runner.contacts
+    assert (rows.point["kind"][:count] == STRUCTURE).all()
+    rows.point["shift_speed"][:count], rows.point["most"][:count] = 0.5, most
+    solve(rows, count, layer.store.plates, layer.runner.edges, 100)
+    assert bool((rows.point["shift"][:count] <= 1e3).all()) is held
