@@ -15,7 +15,7 @@ from rubble.edges import Edges, deeper_on_sheet
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
 from rubble.rows import ICE, SHEET, STRUCTURE, Rows, go_on, set_arms, set_way
-from rubble.slices import Pieces, Slices
+from rubble.slices import Pieces, Slices, strayed
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
 SAME_FACE = 1.0 - 1e-6  #: cosine from which a contact's normal is that of a face
@@ -143,6 +143,7 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
     else:
         point.a = scene.slices.plate[a]
         n_y = _lean(scene, a, b, nx, nz)
+        depth += n_y * (strayed(scene.plates, scene.slices, a) - strayed(scene.plates, scene.slices, b))
     p = 1.0 / np.sqrt(1.0 + n_y * n_y)
     ux, uy, uz = p * nx, p * n_y, p * nz
     set_way(rows.way[c, 0], ux, uy, uz)

@@ -120,6 +120,15 @@ def cut_piece(plates: Plates, pieces: Pieces, slices: Slices, s: int, y: float) 
 
 
 @compiled(nogil=True)
+def strayed(plates: Plates, slices: Slices, s: int) -> float:
+    """How far slice s has come along y since it was cut [m]."""
+    k, b = slices.plate[s], slices.anchor[s]
+    _, y, _ = times(plates.rotation[k], b[0], b[1], b[2])
+    way: float = plates.position[k, 1] + y - slices.y[s]
+    return way
+
+
+@compiled(nogil=True)
 def _face(pieces: Pieces, first: int, n: int, edge: int, out: Array) -> None:
     """Outward normal of a face in the plate's axes: of an edge of the outline, or of a side of the piece."""
     if edge >= n:
