@@ -55,7 +55,7 @@ class Underside:
     def _section(self, column: int, motion: NodeMotion, rear: float) -> SheetEdge:
         g, front = self._sheet.grid, int(self._edge.front[column])
         foremost = float(motion(np.array([front * g.ny + column]))[0][0, 0])
-        rows = np.arange(front, max(front - int(self._reach(foremost, rear) / g.d) - 1, -1), -1)
+        rows = np.arange(front, max(front - int(min(self._reach(foremost, rear) / g.d, g.nx)) - 1, -1), -1)
         present = self._sheet.present[rows * g.ny + column]
         rows = rows[: int(np.argmin(present))] if not present.all() else rows
         nodes = rows * g.ny + column
