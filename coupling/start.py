@@ -6,6 +6,8 @@ the force between them has found its value. The floe then just touches the struc
 
 from __future__ import annotations
 
+import numpy as np
+
 from coupling.interface import SheetForces, SimulationError
 from coupling.rubble_port import RubblePort
 from coupling.rubble_port.initial import fill, front_sections, rest_again
@@ -13,16 +15,19 @@ from coupling.sheet_port import SheetPort
 
 CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
 ROUNDS = 20
+FLATTEST = np.radians(25.0)  #: flank of settled rubble: how far back the sheet must be known at first
 
 
 def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, porosity: float, seed: int) -> None:
     """Settles ``volume`` [m^3] of ice as rubble of this porosity, with the sheet in equilibrium on it."""
     sections = front_sections(rubble)
-    pile = fill(rubble, volume, porosity, seed, sheet.edges(sections))
+    area = volume / (1.0 - porosity) / (len(sections) * rubble.layer.pitch)
+    rear = rubble.structure.foremost_x(0.0) - float(np.sqrt(2.0 * area / np.tan(FLATTEST)))
+    pile = fill(rubble, volume, porosity, seed, sheet.edges(dict.fromkeys(sections, rear)))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):
         sheet.rest_under(rubble.forces_on_sheet())
-        rest_again(rubble, sheet.edges(sections))
+        rest_again(rubble, sheet.edges(dict.fromkeys(sections, rubble.layer.rear)))
         before, lift = lift, _lift(rubble.forces_on_sheet())
         if abs(lift - before) <= CHANGE * pile.force:
             sheet.rest_under(rubble.forces_on_sheet())

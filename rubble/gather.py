@@ -184,7 +184,7 @@ def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple
         y += r[1, 0] * b[0] + r[1, 1] * b[1] + r[1, 2] * b[2]
     y = min(max(y, point.y - 0.5 * scene.pitch), point.y + 0.5 * scene.pitch)
     radius = np.hypot(point.x, point.y)
-    least = max(radius, 1e-9) / STEEPEST
+    least = max(radius, 1e-300) / STEEPEST
     x, shift = point.x, -face.constant * (y - point.y)
     if face.radial != 0.0:
         x = np.copysign(max(np.sqrt(max(radius * radius - y * y, 0.0)), least), point.x)

@@ -9,6 +9,8 @@ import numpy as np
 from rubble.arrays import Array
 from rubble.geometry import contiguous
 
+SAME = 1e-9  #: points that are nearer to each other are one, over the largest coordinate
+
 
 def convex_parts(face: Array, back: Array | float | None = None) -> list[Array]:
     """Convex polygons (k, 2) of the solid behind a front face (n, 2) of (x, z) points, z ascending.
@@ -34,7 +36,7 @@ def _closed(part: Array, back: Array | float | None) -> Array:
     mirrored = part[::-1] * np.array([-1.0, 1.0])
     rear = mirrored if back is None else _rear(part, np.asarray(back, dtype=np.float64))
     loop = np.concatenate([part, rear])
-    kept: Array = loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > 1e-9]
+    kept: Array = loop[np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1) > SAME * np.abs(loop).max()]
     return kept
 
 
@@ -47,7 +49,7 @@ def _rear(part: Array, back: Array) -> Array:
     ends = [(float(np.interp(at, z, x)), at) for at in (low, high)]
     line = np.array([ends[0], *back[(z > low) & (z < high)].tolist(), ends[1]])
     rearmost, face = float(line[:, 0].max()), float(part[:, 0].max())
-    ahead = line[:, 0] < np.interp(line[:, 1], part[:, 1], part[:, 0]) - 1e-9
+    ahead = line[:, 0] < np.interp(line[:, 1], part[:, 1], part[:, 0]) - SAME * abs(rearmost)
     if ahead.any() or rearmost <= face:
         raise ValueError(f"back of the structure at {rearmost:g} m lies ahead of its face; give more than {face:g} m")
     return line[::-1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import inf, isfinite
+from math import inf, isfinite, sqrt
 from typing import Literal
 
 RATE_DEPENDENT = "rate-dependent"  #: friction after Lishman and Polojarvi (2015), see `friction.rate_dependent`
@@ -72,6 +72,11 @@ class RubblePhysics:
     def slop(self) -> float:
         """Overlap that the impulse solver leaves alone [m]."""
         return self.slop_ratio * self.thickness
+
+    @property
+    def pace(self) -> float:
+        """Times of this ice over those of ice of 3 m, by Froude's law: (h / g)^0.5 over its value there [-]."""
+        return sqrt(self.thickness / 3.0 * (9.81 / self.g))
 
     @property
     def afloat(self) -> float:

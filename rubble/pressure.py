@@ -18,7 +18,8 @@ from rubble.compiled import compiled
 #: unit direction (t_x, t_z); water lies to the right of it
 EDGE = record("x0", "z0", "x1", "z1", "width", "top", "t_x", "t_z")
 
-FAR = 1e3  #: a waterline farther away than any piece is long: the piece is under water as a whole, or out of it [m]
+#: in thicknesses; a waterline farther away than any piece is long: the piece is under water as a whole, or out of it
+FAR = 1e3 / 3.0
 
 
 class Wet(NamedTuple):
@@ -54,9 +55,9 @@ def wet_part(edge: Record, z: float, s: float, c: float) -> Wet:
 
 
 @compiled(nogil=True, inline="always")
-def on_waterline(z: float, s: float, c: float) -> tuple[float, float]:
-    """The point of the waterline nearest to the origin of a piece."""
+def on_waterline(z: float, s: float, c: float, far: float) -> tuple[float, float]:
+    """The point of the waterline nearest to the origin of a piece; the origin if that is farther than ``far`` [m]."""
     rise = s * s + c * c
-    if rise == 0.0 or z * z > FAR * FAR * rise:
+    if rise == 0.0 or z * z > far * far * rise:
         return 0.0, 0.0
     return -z * s / rise, -z * c / rise

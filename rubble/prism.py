@@ -103,8 +103,9 @@ def wetted_edges(parts: list[Array], cuts: Array, widths: Array) -> Records:
 
 def _beyond_cut(xa: float, xb: float, cuts: Array, k: int, count: int) -> int | None:
     """Number of the strip on the other side of an edge that lies on a cut; None for an outer edge."""
+    same = 1e-12 * (cuts[-1] - cuts[0])
     for cut, other in ((k, k - 1), (k + 1, k + 1)):
-        if 0 <= other < count and abs(xa - cuts[cut]) < 1e-12 and abs(xb - cuts[cut]) < 1e-12:
+        if 0 <= other < count and abs(xa - cuts[cut]) < same and abs(xb - cuts[cut]) < same:
             return other
     return None
 

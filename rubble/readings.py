@@ -36,6 +36,16 @@ class Readings:
         """All plates in the order of their numbers."""
         return self.store.list
 
+    @property
+    def rear(self) -> float:
+        """X of the rearmost corner of all plates; inf if there are none [m]."""
+        plates, pieces = self.store.plates, self.store.tables.pieces
+        piece = np.repeat(np.arange(len(pieces.plate)), np.diff(pieces.offset))
+        k, half = pieces.plate[piece], 0.5 * pieces.width[piece]
+        to_x, (x, z) = plates.rotation[k, 0], pieces.corners.T
+        back = to_x[:, 0] * x + to_x[:, 1] * pieces.y[piece] + to_x[:, 2] * z - np.abs(to_x[:, 1]) * half
+        return float((plates.position[k, 0] + back).min(initial=np.inf))
+
     def columns(self) -> dict[str, NDArray[Any]]:
         """All plates as arrays by name, in the order of their numbers; see `table.columns`."""
         return table.columns(self.store, self.key_at, self.runner.window)

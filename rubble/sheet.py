@@ -40,6 +40,8 @@ NODE = record(
 MEETS = ("x", "z", "v_x", "v_y", "v_z", "gain_x", "gain_y", "gain_z", "light_x", "light_y", "light_z")
 ICE, SHEET_CATEGORY, STRUCTURE_CATEGORY = 1, 0b10, 0b100  #: collision type and categories, see `section`
 
+SAME = 1e-9 / 3.0  #: places that are nearer to each other are one, in thicknesses
+
 
 @dataclass(frozen=True)
 class SheetMotion:
@@ -106,7 +108,7 @@ class SheetBody:
     def _set_shapes(self, local: Array) -> None:
         """New corners (polygons, 4, 2) for the old shapes if their number is the same: contacts keep their history."""
         if local.shape == self._corners.shape:
-            if np.abs(local - self._corners).max() < 1e-9:
+            if np.abs(local - self._corners).max() < SAME * self.physics.thickness:
                 return  # it has only drifted
             for shape, corners in zip(self.shapes, local.tolist(), strict=True):
                 shape.unsafe_set_vertices(corners)
@@ -136,8 +138,8 @@ def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance
     """
     points = np.column_stack([x, z])
     if len(x) == 1:  # half a cell on both sides
-        points = np.array([points[0], points[0] - [max(front - x[0], 1e-3), 0.0]])
-    if front - x[0] > 1e-9:
+        points = np.array([points[0], points[0] - [max(front - x[0], thickness / 3000.0), 0.0]])
+    if front - x[0] > SAME * thickness:
         slope = (points[0, 1] - points[1, 1]) / (points[0, 0] - points[1, 0])
         points[0] = front, points[0, 1] + slope * (front - x[0])
     pieces: Array = _pieces(points, thickness / 2, tolerance)

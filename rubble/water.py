@@ -22,7 +22,7 @@ from rubble.arrays import Array, IntArray, Record, Records, record
 from rubble.compiled import compiled
 from rubble.physics import RubblePhysics
 from rubble.plates import Plates, times, turn_back
-from rubble.pressure import Wet, on_waterline, wet_part
+from rubble.pressure import FAR, Wet, on_waterline, wet_part
 
 #: what water has done to the plates since the start [J]: loss by drag, work of dry tops
 WATER_WORK = record("drag_loss", "dry_work")
@@ -44,6 +44,7 @@ class Water(NamedTuple):
     filling_rate: float  #: part of the head on a wet top that comes per second [1/s]
     current_x: float  #: velocity of the water along x and y [m/s]
     current_y: float
+    far: float  #: see `pressure.FAR` [m]
 
 
 class Hulls(NamedTuple):
@@ -88,6 +89,7 @@ def water_of(physics: RubblePhysics) -> Water:
         filling_rate=float(physics.filling_rate),
         current_x=float(physics.current[0]),
         current_y=float(physics.current[1]),
+        far=FAR * physics.thickness,
     )
 
 
@@ -153,7 +155,7 @@ def _piece_force(i: int, plates: Plates, hulls: Hulls, water: Water, out: Array)
     pose = Pose(plates.position[k, 2] + r[2, 1] * y, c, s, ux - wz * y, uz + wx * y, -wy)
     volume = at_x = at_z = fx = fz = turn = dry_x = dry_z = dry_turn = 0.0
     lowest = np.inf
-    ox, oz = on_waterline(pose.z, s, c)
+    ox, oz = on_waterline(pose.z, s, c, water.far)
     for e in range(hulls.offset[i], hulls.offset[i + 1]):
         edge = hulls.edges[e]
         wet, width = wet_part(edge, pose.z, s, c), edge.width
@@ -205,7 +207,7 @@ def fill_tops(plates: Plates, water: Water, lowest: Array, dt: float) -> None:
 
 
 @compiled(nogil=True)
-def potential(plates: Plates, hulls: Hulls, mass: Array, rho_g: float, g: float, afloat: float, out: Array) -> None:
+def potential(plates: Plates, hulls: Hulls, mass: Array, water: Water, g: float, afloat: float, out: Array) -> None:
     """Energy of weight and of water all around of each plate (n,) [J], from ice that floats flat (`RubblePhysics`)."""
     for k in range(plates.moved.shape[0] - 1):
         out[k] = mass[k] * (g * plates.position[k, 2] - afloat)
@@ -213,8 +215,8 @@ def potential(plates: Plates, hulls: Hulls, mass: Array, rho_g: float, g: float,
         k = hulls.plate[i]
         r = plates.rotation[k]
         z, s, c = plates.position[k, 2] + r[2, 1] * hulls.y[i], r[2, 0], r[2, 2]
-        ox, oz = on_waterline(z, s, c)
+        ox, oz = on_waterline(z, s, c, water.far)
         for e in range(hulls.offset[i], hulls.offset[i + 1]):
             wet = wet_part(hulls.edges[e], z, s, c)
             cross = 0.5 * hulls.edges[e].width * ((wet.ax - ox) * (wet.bz - oz) - (wet.bx - ox) * (wet.az - oz))
-            out[k] -= rho_g * cross * (z + (s * (wet.ax + wet.bx + ox) + c * (wet.az + wet.bz + oz)) / 3.0)
+            out[k] -= water.rho_g * cross * (z + (s * (wet.ax + wet.bx + ox) + c * (wet.az + wet.bz + oz)) / 3.0)

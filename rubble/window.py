@@ -18,7 +18,7 @@ from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
 from rubble.plates import kinetic, momenta
-from rubble.rows import Rows, Surface, grown, room
+from rubble.rows import GIVES_WAY, Rows, Surface, grown, room
 from rubble.sections import SectionTable
 from rubble.shore import Yields, edges_of, keep
 from rubble.sides import Sides, find_sides, side_room
@@ -26,7 +26,7 @@ from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
 
-BIAS = 0.9**60.0  #: share of an overlap that is left after a second: Chipmunk's
+BIAS = 0.9**60.0  #: share of an overlap of ice of 3 m that is left after a second: Chipmunk's
 
 
 class Run(NamedTuple):
@@ -176,8 +176,8 @@ class Runner:
 
     def _surface(self) -> Surface:
         p = self.physics
-        bias = 1.0 - BIAS**p.substep
-        return Surface(coefficient(p.mu_ice_ice), coefficient(p.mu_structure), p.restitution, bias, p.slop)
+        bias, mu = 1.0 - BIAS ** (p.substep / p.pace), (coefficient(p.mu_ice_ice), coefficient(p.mu_structure))
+        return Surface(*mu, p.restitution, bias, p.slop, GIVES_WAY * p.pace)
 
     def _known_pressure(self, store: Store) -> Array:
         unknown = np.full(6, np.nan)
@@ -220,7 +220,7 @@ class Runner:
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""
         p, out = self.physics, np.zeros(len(store.list))
-        potential(store.plates, store.tables.hulls, store.tables.mass, self.water.rho_g, p.g, p.afloat, out)
+        potential(store.plates, store.tables.hulls, store.tables.mass, self.water, p.g, p.afloat, out)
         return float(kinetic(store.plates)), out
 
     def energy_of(self, plate: Plate) -> float:

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from cosim.verify.case import CaseResult, near
-from coupling.rubble_port import OUTLINE_TOLERANCE
 from coupling.structure import Revolved, cone
 from rubble.arrays import Array
 from rubble.cut import revolved
@@ -56,9 +55,7 @@ def pressed_block(p: dict[str, Any], structure: Revolved, y: float) -> tuple[Rub
         physics,
         WIDTH,
         origin=y,
-        solids=lambda at: revolved(
-            convex_parts(*structure.section(at, structure.bottom, structure.top, OUTLINE_TOLERANCE))
-        ),
+        solids=lambda at: revolved(convex_parts(*structure.section(at, structure.bottom, structure.top, 1e-3))),
     )
     z, angle = -1.5, 2.0 * np.pi * (np.arange(24) + 0.5) / 24
     n = structure.normal(y, z)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -114,8 +115,8 @@ class RubbleParticipant(Protocol):
         """Turns a fragment into blocks where and as it moves. The fragment is not kept."""
         ...
 
-    def sections_in_use(self) -> list[int]:
-        """Numbers of the sections in which the rubble must know where the sheet is, ascending."""
+    def sections_in_use(self) -> Mapping[int, float]:
+        """Numbers of the sections in which the rubble must know where the sheet is, ascending; to which x back [m]."""
         ...
 
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:

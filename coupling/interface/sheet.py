@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -172,11 +172,14 @@ class SheetParticipant(Protocol):
         """
         ...
 
-    def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
-        """The sheet in these sections where it is and moves now; a section without ice in front has no entry."""
+    def edges(self, sections: Mapping[int, float]) -> dict[int, SheetEdge]:
+        """The sheet in these sections where it is and moves now; a section without ice in front has no entry.
+
+        Each from its front back to the x that is given for it, or farther [m].
+        """
         ...
 
-    def path(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
+    def path(self, sections: Mapping[int, float]) -> dict[int, SheetEdge]:
         """The same at the start of the window, with the mean velocity over it: it ends where the sheet is.
 
         Without the nodes that have left in the window.

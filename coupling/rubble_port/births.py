@@ -43,7 +43,7 @@ class Momenta:
         return cls(p.sum(axis=0), spin.sum(axis=0), scale)
 
 
-def frame_of(f: Fragment) -> tuple[Array, Array]:
+def frame_of(f: Fragment, thickness: float) -> tuple[Array, Array]:
     """A point (3,) of the plane through the middle of a fragment's ice, and its axes as columns (3, 3)."""
     volume = f.length * f.width
     at = _ice(f)
@@ -51,7 +51,7 @@ def frame_of(f: Fragment) -> tuple[Array, Array]:
     d = at - centre
     xx, yy, xy = (float((volume * a).sum()) for a in (d[:, 0] ** 2, d[:, 1] ** 2, d[:, 0] * d[:, 1]))
     xz, yz = float((volume * d[:, 0] * d[:, 2]).sum()), float((volume * d[:, 1] * d[:, 2]).sum())
-    least, own = 1e-9 * float(volume.sum()), -float(np.average(np.tan(f.tilt), weights=volume))
+    least, own = 1e-9 * float(volume.sum()) * thickness**2, -float(np.average(np.tan(f.tilt), weights=volume))
     if xx * yy - xy**2 > least * max(xx, yy, least):
         rise, lean = (xz * yy - yz * xy) / (xx * yy - xy**2), (yz * xx - xz * xy) / (xx * yy - xy**2)
     elif xx > least:

@@ -34,7 +34,7 @@ class Arrivals:
         """Turns a fragment into a plate where and as it moves now."""
         h, mass = self._physics.thickness, float(fragment.mass.sum())
         self.fragments += 1
-        origin, axes = frame_of(fragment)
+        origin, axes = frame_of(fragment, h)
         whole = list(births(fragment, h, origin, axes))
         if not whole:
             return HandOver(0, mass, mass, 0.0)

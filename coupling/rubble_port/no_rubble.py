@@ -24,9 +24,9 @@ class NoRubble:
         self.cleared_mass += mass
         return HandOver(0, mass, 0.0, 0.0)
 
-    def sections_in_use(self) -> list[int]:
+    def sections_in_use(self) -> dict[int, float]:
         """None."""
-        return []
+        return {}
 
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """Nothing is there to meet the sheet."""

@@ -35,7 +35,8 @@ from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 from rubble.sheet import SheetMotion
 
-OUTLINE_TOLERANCE = 0.001  #: of the structure's cut by a section [m]: its normal is right within 0.6 degrees
+#: of the structure's cut by a section, in thicknesses: 1 mm for ice of 3 m, whose normal is right within 0.6 degrees
+OUTLINE_TOLERANCE = 1.0 / 3000.0
 
 
 @dataclass(frozen=True)
@@ -65,13 +66,14 @@ class RubblePort:
     ):
         """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
         bottom, top = max(structure.bottom, -domain.depth), structure.top
+        tolerance = OUTLINE_TOLERANCE * physics.thickness
 
         def solids(y: float) -> Cut:
             def bearing(x: float, z: float) -> Bearing:
                 constant, radial = structure.bearing(x, y, z)
                 return Bearing(float(constant), float(radial))
 
-            return faceted(convex_parts(*structure.section(y, bottom, top, OUTLINE_TOLERANCE)), bearing)
+            return faceted(convex_parts(*structure.section(y, bottom, top, tolerance)), bearing)
 
         self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, domain=domain, threads=threads)
         self.physics = physics
@@ -88,9 +90,10 @@ class RubblePort:
         """Turns a fragment into blocks where and as it moves now."""
         return self._arrivals.add(self.layer, fragment)
 
-    def sections_in_use(self) -> list[int]:
-        """Sections that hold blocks or are next to one: those that must know where the sheet is."""
-        return sorted({k + side for k in self.layer.sections_in_use() for side in (-1, 0, 1)})
+    def sections_in_use(self) -> dict[int, float]:
+        """Sections that hold blocks or are next to one, and x of the rearmost block: where the sheet must be known."""
+        keys = sorted({k + side for k in self.layer.sections_in_use() for side in (-1, 0, 1)})
+        return dict.fromkeys(keys, self.layer.rear)
 
     def set_sheet(self, edges: dict[int, SheetEdge], carried: SheetForces, compliance: Array) -> None:
         """The sheet's edges for the coming window; ``carried`` are the forces that it already answers to in them."""

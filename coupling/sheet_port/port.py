@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -203,11 +203,11 @@ class SheetPort:
         """Energy of the sheet by term [J]."""
         return energy_terms(self.sheet.energy, self.motion.velocity)
 
-    def edges(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
+    def edges(self, sections: Mapping[int, float]) -> dict[int, SheetEdge]:
         """The sheet's edge and underside in these sections, where they are and move now."""
         return self.underside.edges(sections, self.motion.now)
 
-    def path(self, sections: Sequence[int]) -> dict[int, SheetEdge]:
+    def path(self, sections: Mapping[int, float]) -> dict[int, SheetEdge]:
         """The same edges at the start of the last window, with their mean velocity over it: they end where they are."""
         return self.underside.edges(sections, self.motion.mean)
 

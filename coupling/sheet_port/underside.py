@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from lattice.floe import Floe
 
 NodeMotion = Callable[[IntArray], tuple[Array, Array]]  #: position (n, 3) and velocity in x and z (n, 2) of nodes
 
-#: length of sheet behind its edge that the rubble meets [m]: the campaign's 3000 m3 of initial rubble reach 25 m back.
-#: What lies farther behind would rise into open water
-REACH = 30.0
+#: length of sheet behind its edge that the rubble meets, in thicknesses; so many times as long as the rubble reaches
+#: back, because what lies farther behind would rise into open water. Whole steps, because contacts with the sheet start
+#: anew where its outline has
+REACH = 10.0
 
 
 class Underside:
@@ -26,16 +27,16 @@ class Underside:
         self._sheet, self._motion, self._edge, self._columns = sheet, motion, edge, columns_per_section
         self._yielding = Yielding(sheet)
 
-    def edges(self, sections: Sequence[int], motion: NodeMotion) -> dict[int, SheetEdge]:
-        """Edges where there is ice in front, with places and velocities by ``motion``."""
-        return {key: self._section(column, motion) for key, column in self._in_front(sections).items()}
+    def edges(self, sections: Mapping[int, float], motion: NodeMotion) -> dict[int, SheetEdge]:
+        """Edges where there is ice in front, back to the x given [m], with places and velocities by ``motion``."""
+        return {key: self._section(column, motion, sections[key]) for key, column in self._in_front(sections).items()}
 
     def compliance(self, sections: Sequence[int]) -> Array:
         """As `SheetParticipant.compliance`."""
         columns = list(self._in_front(sections).values())
         return self._yielding.matrix(self._edge.front[columns] * self._sheet.grid.ny + np.array(columns, np.int64))
 
-    def _in_front(self, sections: Sequence[int]) -> dict[int, int]:
+    def _in_front(self, sections: Iterable[int]) -> dict[int, int]:
         """The column that stands for each section: the rearmost, so that no ice beside a new plate overlaps it."""
         columns = {}
         for key in sections:
@@ -46,9 +47,15 @@ class Underside:
                     columns[key] = first + int(np.argmin(front))
         return columns
 
-    def _section(self, column: int, motion: NodeMotion) -> SheetEdge:
+    def _reach(self, front: float, rear: float) -> float:
+        """Length of sheet behind its front that rubble meets which reaches back to ``rear`` [m]."""
+        step = REACH * self._sheet.ice.h
+        return step * max(1.0, float(np.ceil((front - rear + self._sheet.ice.h) / step)))
+
+    def _section(self, column: int, motion: NodeMotion, rear: float) -> SheetEdge:
         g, front = self._sheet.grid, int(self._edge.front[column])
-        rows = np.arange(front, max(front - int(REACH / g.d) - 1, -1), -1)
+        foremost = float(motion(np.array([front * g.ny + column]))[0][0, 0])
+        rows = np.arange(front, max(front - int(min(self._reach(foremost, rear) / g.d, g.nx)) - 1, -1), -1)
         present = self._sheet.present[rows * g.ny + column]
         rows = rows[: int(np.argmin(present))] if not present.all() else rows
         nodes = rows * g.ny + column

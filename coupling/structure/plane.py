@@ -13,7 +13,8 @@ from coupling.interface.units import Array, IntArray
 from coupling.structure.mesh import triangles
 from coupling.structure.profile import Profiled, checked, piece_at, polyline
 
-THICK = 100.0  #: of the solid behind the rearmost point of the face, more than any block can pass through [m]
+#: of the solid behind the rearmost point of the face, in heights of the face: more than any block can pass through
+THICK = 8.0
 
 
 @compiled()
@@ -82,7 +83,7 @@ class PlaneSlope(Profiled):
         front = polyline(points)
         if not len(front):
             return front, front
-        back = float(front[:, 0].max()) + THICK
+        back = float(front[:, 0].max()) + THICK * float(front[-1, 1] - front[0, 1])
         return front, np.array([(back, front[0, 1]), (back, front[-1, 1])])
 
     def bearing(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:

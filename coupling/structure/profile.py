@@ -110,10 +110,11 @@ def piece_at(z: float, profile_z: Array, profile_r: Array) -> tuple[float, float
 
 
 def polyline(points: Sequence[Array]) -> Array:
-    """Points (2,) as (n, 2), each once."""
+    """Points (2,) as (n, 2), each once: what is nearer than a billionth of the largest coordinate is one."""
     kept: list[Array] = []
+    same = 1e-9 * max((float(np.abs(p).max()) for p in points), default=0.0)
     for p in points:
-        if not kept or np.abs(p - kept[-1]).max() > 1e-9:
+        if not kept or np.abs(p - kept[-1]).max() > same:
             kept.append(p)
     return np.array(kept, dtype=np.float64).reshape(-1, 2)
 

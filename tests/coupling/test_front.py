@@ -80,3 +80,13 @@ def test_the_contact_is_reported_node_by_node_where_it_acts():
     np.testing.assert_allclose(c.position[:, 0], front, rtol=1e-12)
     z = ICE.freeboard + s.q[c.nodes, 0] - D / 2 * s.q[c.nodes, 1]
     np.testing.assert_allclose(c.position[:, 2], z, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("behind", "rows"), [(-np.inf, 6), (3.0, 6), (8.9, 6), (9.1, 11), (15.0, 11), (np.inf, 11)])
+def test_the_sheet_is_known_as_far_back_as_rubble_reaches(behind, rows):
+    """In steps of ten thicknesses, here 10 m or 5 cells, one thickness ahead of the rearmost block."""
+    p = port()
+    front = p.sheet.grid.xy[:, 0].max()
+    edge = p.edges({2: front - behind})[2]
+    assert len(edge.x) == rows
+    assert edge.x[-1] <= max(front - behind, p.sheet.grid.xy[:, 0].min())

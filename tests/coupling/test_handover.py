@@ -49,7 +49,7 @@ def area(polygon):
 
 
 def pieces(f):
-    return list(births(f, H, *frame_of(f)))
+    return list(births(f, H, *frame_of(f, H)))
 
 
 def test_pieces_hold_the_ice_of_their_columns():
@@ -63,7 +63,7 @@ def test_pieces_hold_the_ice_of_their_columns():
 
 def test_a_rigid_piece_keeps_its_place():
     f = fragment()
-    origin, axes = frame_of(f)
+    origin, axes = frame_of(f, H)
     np.testing.assert_allclose(axes[:, 0], [np.cos(0.1), 0.0, np.sin(0.1)], atol=1e-12)
     np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-14)
     for b in births(f, H, origin, axes):
@@ -75,7 +75,7 @@ def test_a_rigid_piece_keeps_its_place():
 def test_a_plate_that_leans_has_its_lean():
     f = fragment(turn=0.0)
     leaning = replace(f, position=f.position + np.outer(0.05 * f.position[:, 1], [0.0, 0.0, 1.0]))
-    _, axes = frame_of(leaning)
+    _, axes = frame_of(leaning, H)
     assert axes[2, 1] / axes[1, 1] == pytest.approx(0.05, rel=1e-9)
 
 

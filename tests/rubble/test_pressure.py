@@ -28,7 +28,7 @@ def test_the_wet_part_ends_at_the_water(za, zb):
 
 
 def test_the_nearest_point_of_the_waterline():
-    x, z = on_waterline(-2.0, 0.6, 0.8)
+    x, z = on_waterline(-2.0, 0.6, 0.8, 1e3)
     assert -2.0 + 0.6 * x + 0.8 * z == pytest.approx(0.0, abs=1e-12)
     assert x * 0.8 == pytest.approx(z * 0.6)
 
