@@ -1,24 +1,24 @@
 """How a run begins: rubble of earlier ice lies under the floe, and both are at rest.
 
-The rubble settles under the sheet, the sheet bends up under the rubble, the rubble settles under the bent sheet, until
-the force between them has found its value. The floe then just touches the structure.
+The rubble settles at the sheet, the sheet bends under it, the rubble settles at the bent sheet, until the force between
+them has found its value. The floe then just touches the structure.
 """
 
 from __future__ import annotations
 
 from coupling.interface import SheetForces, SimulationError
 from coupling.rubble_port import RubblePort
-from coupling.rubble_port.initial import fill, front_sections, rest_again
+from coupling.rubble_port.initial import Initial, fill, front_sections, rest_again
 from coupling.sheet_port import SheetPort
 
 CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
 ROUNDS = 20
 
 
-def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, porosity: float, seed: int) -> None:
-    """Settles ``volume`` [m^3] of ice as rubble of this porosity, with the sheet in equilibrium on it."""
+def lay_rubble(sheet: SheetPort, rubble: RubblePort, asked: Initial) -> None:
+    """Settles rubble, with the sheet in equilibrium with it."""
     sections = front_sections(rubble)
-    pile = fill(rubble, volume, porosity, seed, sheet.edges(sections))
+    pile = fill(rubble, asked, sheet.edges(sections))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):
         sheet.rest_under(rubble.forces_on_sheet())
@@ -28,7 +28,7 @@ def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, porosity: fl
             sheet.rest_under(rubble.forces_on_sheet())
             return
     raise SimulationError(
-        f"initial rubble and sheet found no rest in {ROUNDS} rounds: the lift on the sheet still "
+        f"initial rubble and sheet found no rest in {ROUNDS} rounds: the force on the sheet still "
         f"changes from {before:.3g} to {lift:.3g} N; give less rubble (rubble.initial_volume)"
     )
 

@@ -1,16 +1,17 @@
-"""Rubble that is there before the run, under a sheet that lies still."""
+"""Rubble that is there before the run, under a sheet that lies still, or on top of it where the structure lifts it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from coupling.interface import SheetEdge
 from coupling.rubble_port.failing import failing
 from coupling.rubble_port.port import RubblePort
-from rubble.initial import Pile, rest, settle
+from rubble.initial import rest, settle
+from rubble.pile import Pile
 
 
 def front_sections(port: RubblePort) -> list[int]:
@@ -21,16 +22,39 @@ def front_sections(port: RubblePort) -> list[int]:
     return [k for k in keys if abs(y := layer.centre(k)) < half and np.isfinite(port.structure.face_x(y, 0.0))]
 
 
-def fill(port: RubblePort, volume: float, porosity: float, seed: int, edges: dict[int, SheetEdge]) -> Pile:
-    """Settles ``volume`` [m^3] of new rubble in the sections of ``edges``."""
+@dataclass(frozen=True)
+class Initial:
+    """What is asked of initial rubble."""
+
+    volume: float  #: of ice [m^3]
+    porosity: float
+    lengths: tuple[float, float]  #: of the blocks, least and greatest, in thicknesses
+    seed: int
+
+
+def fill(port: RubblePort, asked: Initial, edges: dict[int, SheetEdge]) -> Pile:
+    """Settles new rubble in the sections of ``edges``."""
     _hold(port, edges)
-    return _settled(port, lambda: settle(port.layer, _corners(port, edges), volume, seed, porosity=porosity))
+    corners, above = _corners(port, edges), not port.structure.faces_down
+
+    def pile() -> Pile:
+        return settle(
+            port.layer,
+            corners,
+            asked.volume,
+            asked.seed,
+            porosity=asked.porosity,
+            lengths=asked.lengths,
+            above=above,
+        )
+
+    return _settled(port, pile)
 
 
 def rest_again(port: RubblePort, edges: dict[int, SheetEdge]) -> Pile:
     """The rubble comes to rest once more, under a sheet that has moved."""
     _hold(port, edges)
-    return _settled(port, lambda: rest(port.layer, _corners(port, edges)))
+    return _settled(port, lambda: rest(port.layer, _corners(port, edges), above=not port.structure.faces_down))
 
 
 def _hold(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
@@ -47,7 +71,8 @@ def _settled(port: RubblePort, pile: Callable[[], Pile]) -> Pile:
 
 
 def _corners(port: RubblePort, edges: dict[int, SheetEdge]) -> dict[int, tuple[float, float]]:
-    """The corner that rubble fills: x of the structure's face, or of the front, at the sheet's underside, and z [m]."""
-    under = {k: float(e.z[0]) - 0.5 * port.physics.thickness for k, e in edges.items()}
-    face = {k: float(port.structure.face_x(port.layer.centre(k), under[k])) for k in edges}
-    return {k: (min(face[k], e.front), under[k]) for k, e in edges.items() if np.isfinite(face[k])}
+    """The corner that rubble fills: x of structure or front at the side of the sheet where it lies, and z [m]."""
+    half = (-0.5 if port.structure.faces_down else 0.5) * port.physics.thickness
+    at = {k: float(e.z[0]) + half for k, e in edges.items()}
+    face = {k: float(port.structure.face_x(port.layer.centre(k), at[k])) for k in edges}
+    return {k: (min(face[k], e.front), at[k]) for k, e in edges.items() if np.isfinite(face[k])}

@@ -87,6 +87,7 @@ def test_a_long_step_has_as_many_windows_as_fit_in_it():
 RUBBLE = {
     "friction_ice_ice": ("0.21", "mu_ice_ice", 0.21),
     "friction_structure": ("0.22", "mu_structure", 0.22),
+    "friction_sea_bed": ("0.24", "mu_bed", 0.24),
     "restitution": ("0.23", "restitution", 0.23),
     "form_drag": ("0.24", "form_drag", 0.24),
     "skin_drag": ("0.025", "skin_drag", 0.025),
