@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coupling.interface import SheetEdge
+from coupling.interface import SheetEdge, SimulationError
 from coupling.rubble_port.failing import failing
 from coupling.rubble_port.port import RubblePort
 from rubble.initial import rest, settle
@@ -48,7 +48,9 @@ def fill(port: RubblePort, asked: Initial, edges: dict[int, SheetEdge]) -> Pile:
             above=above,
         )
 
-    return _settled(port, pile)
+    settled = _settled(port, pile)
+    _lies_under_known_sheet(port, edges)
+    return settled
 
 
 def rest_again(port: RubblePort, edges: dict[int, SheetEdge]) -> Pile:
@@ -61,6 +63,19 @@ def _hold(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
     """The sheet lies still and yields to nothing."""
     still = {k: replace(e, velocity=np.zeros_like(e.velocity)) for k, e in edges.items()}
     port.set_sheet(still, port.forces_on_sheet(), np.zeros((2, len(still), len(still))))
+
+
+def _lies_under_known_sheet(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
+    """The rubble knows the front of the sheet only; what has spread behind it rises, or falls, past it."""
+    rear = {k: float(e.x[-1]) for k, e in edges.items()}
+    layer = port.layer
+    for b in layer.blocks:
+        x, y, _ = b.position.tolist()
+        if x < rear.get(layer.key_at(y), -np.inf):
+            raise SimulationError(
+                f"initial rubble reaches {-x:.3g} m before the structure's axis, beyond the front of the sheet that "
+                "rubble meets; give less of it (rubble.initial_volume), or more water (water.depth)"
+            )
 
 
 def _settled(port: RubblePort, pile: Callable[[], Pile]) -> Pile:

@@ -105,6 +105,14 @@ def port_of(*overrides):
     return build_rubble(s, structure, build_sheet(s, build_ice(s), structure).grid)
 
 
+def test_water_is_as_deep_as_it_is_told_and_nothing_is_lost_on_its_bed():
+    deep, shallow, abyss = port_of(), port_of("water.depth='7 m'"), port_of("water.depth='300 m'")
+    assert deep.physics.depth == np.inf
+    assert shallow.physics.depth == 7.0
+    assert shallow.layer.domain.depth == deep.layer.domain.depth
+    assert abyss.layer.domain.depth == 300.0
+
+
 @pytest.mark.parametrize("key", RUBBLE)
 def test_every_value_of_the_rubble_arrives(key):
     text, name, value = RUBBLE[key]

@@ -109,8 +109,9 @@ def lengths_of(layer):
     return np.array([b.mass / (RHO_I * H * b.width) / H for b in layer.blocks])
 
 
+@pytest.mark.slow
 def test_the_mesh_leaves_porosity_and_sizes_alone():
-    """The same front in eight sections and in four twice as wide: blocks are as wide as sections, and as long as ever."""
+    """Eight sections, and four twice as wide: as many blocks in each section's share, as long as ever."""
     fine, narrow = pile(1500.0, range(-4, 4), mu="rate-dependent", pitch=0.5 * PITCH)
     coarse, wide = pile(1500.0, range(-2, 2), mu="rate-dependent")
     assert narrow.porosity == pytest.approx(wide.porosity, abs=0.04)
@@ -143,15 +144,14 @@ def test_the_angle_of_a_flank_is_that_of_the_wedge(angle):
 
 
 def test_a_pile_in_shallow_water_grounds_and_spreads():
-    """Three quarters as deep as it would be: nothing below the bed, which carries what presses it to the sheet."""
+    """Three quarters as deep as it would be: nothing below the bed, a flatter pile, the sheet lifted as ever."""
     _, deep = pile(900.0, (0, 1))
     depth = -UNDER + 0.75 * deep.depth
     layer, found = pile(900.0, (0, 1), depth=depth)
     assert min(b.outline[:, 1].min() for b in layer.blocks) > -depth - 0.02 * H
     assert found.depth <= 0.75 * deep.depth + 0.05 * H
-    on_bed = -layer.budget["sea_bed"][1]
-    assert on_bed < 0.0
-    assert found.force == pytest.approx(900.0 * (RHO_W - RHO_I) * 9.81 - on_bed, rel=0.03)
+    assert found.slope < deep.slope - np.radians(2.0)
+    assert found.force == pytest.approx(900.0 * (RHO_W - RHO_I) * 9.81 + layer.budget["sea_bed"][1], rel=0.03)
     assert found.volume == pytest.approx(900.0, rel=1e-12)
 
 

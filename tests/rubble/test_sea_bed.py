@@ -113,6 +113,16 @@ def test_six_momenta_are_kept_and_a_bed_of_the_wrong_sign_is_found():
     assert (np.abs(gained - received.sum(axis=0)) / scale).max() > 1e-2
 
 
+def test_the_bed_is_a_term_of_what_carries_the_rubble():
+    """Water, drag, inertia and bed balance in every window; without the bed they do not."""
+    layer, _, _ = lively(substeps=1)
+    for _ in range(100):
+        layer.advance(10)
+        terms = np.array([*layer.budget.values()])
+        assert np.abs(terms.sum(axis=0)).max() < 1e-9 * np.abs(terms).max()
+    assert layer.budget["sea_bed"][1] > 0.1 * np.abs(terms).max()
+
+
 def test_energy_that_the_bed_takes_is_booked():
     """What no term explains is below 1e-6 of what the bed takes by impacts and friction."""
     layer, (_, start), _ = lively(substeps=2000, substep=0.0025)
