@@ -180,8 +180,7 @@ class Runner:
     def _surface(self) -> Surface:
         p = self.physics
         bias = 1.0 - BIAS**p.substep
-        ice, structure = coefficient(p.mu_ice_ice), coefficient(p.mu_structure)
-        return Surface(ice, structure, p.mu_bed, p.restitution, bias, p.slop)
+        return Surface(coefficient(p.mu_ice_ice), coefficient(p.mu_structure), p.mu_bed, p.restitution, bias, p.slop)
 
     def _known_pressure(self, store: Store) -> Array:
         unknown = np.full(6, np.nan)
