@@ -22,6 +22,7 @@ from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, BoolArray, RubbleParticipant, Structure
 from coupling.ledger import Ledger
 from coupling.rubble_port import NoRubble, RubblePort
+from coupling.rubble_port.initial import Initial
 from coupling.scheduler import Scheduler
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
@@ -61,7 +62,8 @@ def build(scenario: Scenario) -> Scheduler:
         rubble.on_crushed = ledger.crush
         if scenario.rubble.initial_volume > 0.0:
             r = scenario.rubble
-            lay_rubble(port, rubble, r.initial_volume, r.initial_porosity, scenario.scenario.seed)
+            lengths = (float(r.initial_lengths[0]), float(r.initial_lengths[1]))
+            lay_rubble(port, rubble, Initial(r.initial_volume, r.initial_porosity, lengths, scenario.scenario.seed))
             ledger.initial_mass += rubble.mass
     c = scenario.coupling
     iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")

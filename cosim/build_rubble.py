@@ -22,17 +22,20 @@ def filling_rate(scenario: Scenario) -> float:
 def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> RubblePort:
     """The rubble: blocks in sections of whole node columns, in a domain that ends behind the structure."""
     r, i = scenario.rubble, scenario.ice
+    depth = math.inf if scenario.water.depth is None else float(scenario.water.depth)
     physics = RubblePhysics(
         rho_i=i.density,
         rho_w=scenario.water.density,
         g=scenario.water.gravity,
         mu_ice_ice=r.friction_ice_ice,
         mu_structure=r.friction_structure,
+        mu_bed=r.friction_sea_bed,
         restitution=r.restitution,
         form_drag=r.form_drag,
         skin_drag=r.skin_drag,
         added_mass=r.added_mass,
         added_inertia=r.added_mass,
+        depth=depth,
         thickness=i.thickness,
         iterations=r.iterations,
         substep=r.substep,
@@ -45,7 +48,8 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
     )
     origin, pitch = sections_of(scenario)
     half_width = max(-grid.y0, grid.y0 + (grid.ny - 1) * grid.d)
-    domain = Domain(x_max=structure.reach + 2.0 * i.thickness, depth=20.0 * i.thickness, y_max=half_width + pitch)
+    lowest = max(20.0 * i.thickness, scenario.water.depth or 0.0)  # on the bed nothing is lost
+    domain = Domain(x_max=structure.reach + 2.0 * i.thickness, depth=lowest, y_max=half_width + pitch)
     return RubblePort(
         structure,
         physics,

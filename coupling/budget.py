@@ -9,6 +9,7 @@ By Newton's law for all ice, sheet and blocks, the mean force on the structure o
 ``drag``              of the water on blocks and sheet
 ``inertia``           minus the gain of momentum of blocks (with added mass) and sheet
 ``held``              the supports of the sheet: the thrust of its held edges (x only; nothing holds it in z)
+``sea_bed``           of the sea bed on grounded blocks, only where there is one; minus it is the force on the bed
 ``staggering``        the rubble's force on the sheet that the sheet carried in this window, minus the one that the
                       blocks exerted in it
 ====================  ===============================================================================================
@@ -33,6 +34,7 @@ import numpy as np
 from coupling.interface import Array, ForcePairs
 
 TERMS = ("dry_tops", "flooded_rubble", "pressed_sheet", "drag", "inertia", "held", "staggering")
+NAMED = ("sea_bed",)  #: only where a participant gives it
 AXES = {"fx": 0, "fz": 1}  #: component of the load, its place in a pair
 
 
@@ -42,12 +44,13 @@ def force_budget(load: Array, *participants: ForcePairs, loads: ForcePairs | Non
     ``load`` (3,) on the structure; each participant gives its own terms, those of the same name are added. Other
     ``loads`` on the sheet have a term each, under their names.
     """
-    unknown = {name for terms in participants for name in terms} - set(TERMS)
+    unknown = {name for terms in participants for name in terms} - {*TERMS, *NAMED}
     if unknown:
-        raise ValueError(f"force budget: unknown terms {sorted(unknown)}; known are {', '.join(TERMS)}")
+        raise ValueError(f"force budget: unknown terms {sorted(unknown)}; known are {', '.join(TERMS + NAMED)}")
     out: dict[str, float] = {}
     for axis, k in AXES.items():
         terms = {name: float(sum(p[name][k] for p in participants if name in p)) for name in TERMS}
+        terms |= {name: p[name][k] for name in NAMED for p in participants if name in p}
         terms |= {name: pair[k] for name, pair in (loads or {}).items()}
         out.update({f"{axis}_{name}": value for name, value in terms.items()})
         out[f"{axis}_residual"] = float(load[2 * k]) - float(np.sum(list(terms.values())))

@@ -1,7 +1,7 @@
 """How a run begins: rubble of earlier ice lies under the floe, and both are at rest.
 
-The rubble settles under the sheet, the sheet bends up under the rubble, the rubble settles under the bent sheet, until
-the force between them has found its value. The floe then just touches the structure.
+The rubble settles at the sheet, the sheet bends under it, the rubble settles at the bent sheet, until the force between
+them has found its value. The floe then just touches the structure.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 
 from coupling.interface import SheetForces, SimulationError
 from coupling.rubble_port import RubblePort
-from coupling.rubble_port.initial import fill, front_sections, rest_again
+from coupling.rubble_port.initial import Initial, fill, front_sections, rest_again
 from coupling.sheet_port import SheetPort
 
 CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
@@ -18,12 +18,12 @@ ROUNDS = 20
 FLATTEST = np.radians(25.0)  #: flank of settled rubble: how far back the sheet must be known at first
 
 
-def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, porosity: float, seed: int) -> None:
-    """Settles ``volume`` [m^3] of ice as rubble of this porosity, with the sheet in equilibrium on it."""
+def lay_rubble(sheet: SheetPort, rubble: RubblePort, asked: Initial) -> None:
+    """Settles rubble, with the sheet in equilibrium with it."""
     sections = front_sections(rubble)
-    area = volume / (1.0 - porosity) / (len(sections) * rubble.layer.pitch)
+    area = asked.volume / (1.0 - asked.porosity) / (len(sections) * rubble.layer.pitch)
     rear = rubble.structure.foremost_x(0.0) - float(np.sqrt(2.0 * area / np.tan(FLATTEST)))
-    pile = fill(rubble, volume, porosity, seed, sheet.edges(dict.fromkeys(sections, rear)))
+    pile = fill(rubble, asked, sheet.edges(dict.fromkeys(sections, rear)))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):
         sheet.rest_under(rubble.forces_on_sheet())
@@ -33,7 +33,7 @@ def lay_rubble(sheet: SheetPort, rubble: RubblePort, volume: float, porosity: fl
             sheet.rest_under(rubble.forces_on_sheet())
             return
     raise SimulationError(
-        f"initial rubble and sheet found no rest in {ROUNDS} rounds: the lift on the sheet still "
+        f"initial rubble and sheet found no rest in {ROUNDS} rounds: the force on the sheet still "
         f"changes from {before:.3g} to {lift:.3g} N; give less rubble (rubble.initial_volume)"
     )
 

@@ -20,7 +20,7 @@ from rubble.arrays import Array, Record, Records, record
 from rubble.compiled import compiled
 from rubble.edges import Edges, sheet_speed
 from rubble.plates import Plates
-from rubble.rows import ICE, JOINT, SHEET, STRUCTURE, Rows, speed
+from rubble.rows import BED, ICE, JOINT, SHEET, STRUCTURE, Rows, speed
 from rubble.water import Hulls
 
 #: since the start [J]: put in by stepping, by correction, by thrust; done by plates on the sheet; lost to drag; work of
@@ -28,10 +28,12 @@ from rubble.water import Hulls
 BOOKS = record(
     *("stepping", "correction", "thrust", "on_sheet", "drag_loss", "dry_work"),
     *("impact_ice", "impact_structure", "impact_sheet", "friction_ice", "friction_structure", "friction_sheet"),
+    *("impact_bed", "friction_bed"),
 )
 #: rows of the momenta that plates receive from outside since the start, x, y, z and about the origin [N s], [N m s]:
-#: from structure, sheet and joints; from water, weight and thrust; angular momentum that comes as a shift moves mass
-CONTACT, WATER, SHIFT = 0, 1, 2
+#: from structure, sheet and joints; from water, weight and thrust; angular momentum that comes as a shift moves mass;
+#: from the sea bed
+CONTACT, WATER, SHIFT, GROUND = 0, 1, 2, 3
 
 
 @compiled(nogil=True)
@@ -53,7 +55,7 @@ def _add_momenta(out: Array, row: int, px: float, py: float, pz: float, x: float
 
 @compiled(nogil=True)
 def outside(plates: Plates, hulls: Hulls, forces: Array, dt: float, momenta: Array) -> None:
-    """Adds the momenta (3, 6) that plates receive in a sub-step from water and weight, and by their shift."""
+    """Adds the momenta (4, 6) that plates receive in a sub-step from water and weight, and by their shift."""
     for i in range(plates.moved.shape[0] - 1):
         own, still, turn = forces[i], hulls.weight[i], hulls.moment[i]
         fx = own[0, 0] + own[1, 0] + own[2, 0] + still[0]
@@ -146,6 +148,9 @@ def book_contacts(
         elif point.kind == SHEET:
             books.impact_sheet += lost
             books.friction_sheet += rubbed
+        elif point.kind == BED:
+            books.impact_bed += lost
+            books.friction_bed += rubbed
         else:
             books.impact_ice += lost
             books.friction_ice += rubbed
@@ -163,12 +168,13 @@ def sum_contacts(rows: Rows, count: int, sums: Array, nodes: Records, momenta: A
         y = push * n.y + t.impulse * t.y + s.impulse * s.y
         z = push * n.z + t.impulse * t.z + s.impulse * s.z
         if kind != ICE:
-            _add_momenta(momenta, CONTACT, point.x, point.y, point.z, x=x, y=y, z=z)
+            row = GROUND if kind == BED else CONTACT
+            _add_momenta(momenta, row, point.x, point.y, point.z, x=x, y=y, z=z)
         if kind == STRUCTURE:
             sums[k, 0], sums[k, 1], sums[k, 2] = sums[k, 0] - x, sums[k, 1] - y, sums[k, 2] - z
             sums[k, 5], sums[k, 6] = sums[k, 5] + push, sums[k, 6] + push * point.x
             sums[k, 7], sums[k, 8] = sums[k, 7] + push * point.y, sums[k, 8] + push * point.z
-        elif kind != JOINT:
+        elif kind not in (JOINT, BED):
             sums[k, 3] += push
             if kind == SHEET:
                 sums[k, 4] += push

@@ -51,6 +51,7 @@ class Scene(NamedTuple):
     strength: float  #: greatest pressure of a contact times the sub-step [Pa s]
     shortest: float  #: least length of a contact [m]
     cut: int  #: number of the sub-step in which the slices are new
+    bed: float  #: height of the sea bed, -inf without one [m]
 
 
 @compiled(nogil=True)

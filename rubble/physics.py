@@ -23,11 +23,13 @@ class RubblePhysics:
     g: float = 9.81  #: [m/s^2]
     mu_ice_ice: Friction = 0.1  #: friction of block on block and block on sheet, or "rate-dependent"
     mu_structure: Friction = 0.1  #: friction of block on structure, or "rate-dependent"
+    mu_bed: float = 0.39  #: friction of block on sea bed
     restitution: float = 0.0  #: of every pair
     form_drag: float = 1.0  #: C_d on the projected submerged extent
     skin_drag: float = 4e-3  #: C_f on the wetted edges
     added_mass: float = 0.0  #: share of the mass of displaced water that moves with a block
     added_inertia: float = 0.0  #: the same for rotation
+    depth: float = inf  #: of the water over a level sea bed [m]
     thickness: float = 1.0  #: ice thickness, the length scale of `slop_ratio` [m]
     slop_ratio: float = 0.005  #: allowed overlap of two shapes over ice thickness
     iterations: int = 30  #: of the impulse solver; at least the length of a chain of blocks
@@ -89,10 +91,11 @@ class RubblePhysics:
         return 1.0 / self.filling_time if self.backfill == "filling" else 0.0
 
 
-_MAY_BE_INFINITE = ("contact_strength", "flexural_strength")
+_MAY_BE_INFINITE = ("contact_strength", "flexural_strength", "depth")
 _POSITIVE = (
     "rho_i",
     "rho_w",
+    "depth",
     "thickness",
     "slop_ratio",
     "iterations",

@@ -1,7 +1,8 @@
 """Contacts of all sections as rows of the impulse solver.
 
 Each row has three directions: the normal n from end a to end b, and two along the face, t in the section's plane and s
-across it. Ends are plates; structure and sheet stand at end a, as the ground, and the sheet's edge moves on its own.
+across it. Ends are plates; structure, sheet and sea bed stand at end a, as the ground, and the sheet's
+edge moves on its own.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from rubble.edges import Edges, lightness, sheet_speed
 from rubble.friction import rate_dependent
 from rubble.plates import Plates
 
-ICE, STRUCTURE, SHEET, JOINT = 0, 1, 2, 3  #: kinds of rows
-KINDS = ("ice", "structure", "sheet")
+ICE, STRUCTURE, SHEET, JOINT, BED = 0, 1, 2, 3, 4  #: kinds of rows
+KINDS = ("ice", "structure", "sheet", "bed")  #: of those that lose energy
 GIVES_WAY = 20.0  #: time in which ice of 3 m that has met deep in other ice comes apart, see `RubblePhysics.pace` [s]
 CRUSHES = 1.0 - 1e-9  #: share of the greatest impulse from which a contact crushes
 SAME_WAY = 0.99  #: cosine between the normals of a point before and after a sub-step, below which it is another one
@@ -54,6 +55,7 @@ class Surface(NamedTuple):
 
     mu_ice: float  #: ice on ice; negative: rate-dependent
     mu_structure: float
+    mu_bed: float
     restitution: float
     bias: float  #: share of an overlap that is taken out in a sub-step
     slop: float  #: overlap that is left alone [m]
@@ -155,6 +157,7 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
         a, b = motion[point.a], motion[point.b]
         u = speed(n, a, b) - sheet_speed(nodes, moves, point, n)
         mu = surface.mu_structure if point.kind == STRUCTURE else surface.mu_ice
+        mu = surface.mu_bed if point.kind == BED else mu
         if mu < 0.0:
             v = speed(t, a, b) - sheet_speed(nodes, moves, point, t)
             w = speed(s, a, b) - sheet_speed(nodes, moves, point, s)

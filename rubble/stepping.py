@@ -8,6 +8,7 @@ import numpy as np
 
 from rubble.arrays import Array, IntArray, Records
 from rubble.banks import Banks, bank_rows
+from rubble.bed import bed_rows
 from rubble.bending import Loaded, sum_bending
 from rubble.books import book_contacts, book_step, kick, outside, sum_contacts
 from rubble.compiled import compiled
@@ -46,7 +47,7 @@ class Sums(NamedTuple):
     books: Records  #: (1,) BOOKS
     water: Records  #: (1,) WATER_IMPULSE
     pressure: Array  #: (n, 6) of the last sub-step [N, N m]
-    momenta: Array  #: (3, 6) that plates receive, see `books`
+    momenta: Array  #: (4, 6) that plates receive, see `books`
     counted: IntArray  #: (2,) rows of the last sub-step; its number
 
 
@@ -72,6 +73,8 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0], cut)
         if contacts >= 0:
             contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0], cut)
+        if contacts >= 0:
+            contacts = bed_rows(scene, rows, old, contacts, sums.counted[0], cut and not window.planar)
         found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
         if found < 0:
             return NO_ROOM

@@ -8,7 +8,7 @@ import numpy as np
 
 from rubble.arrays import Array, IntArray, filled_room
 from rubble.banks import Banks, bank_room, find_banks
-from rubble.books import BOOKS, SHIFT
+from rubble.books import BOOKS, GROUND, SHIFT
 from rubble.breaking import Break, Breaking, part
 from rubble.edges import Edges
 from rubble.friction import coefficient
@@ -37,6 +37,7 @@ class Run(NamedTuple):
     sums: Sums
     momentum: Array  #: (3,) with added mass, at its start [N s]
     on_sheet: float  #: work of plates on the sheet so far [J]
+    ground: Array  #: (6,) momenta from the sea bed so far
 
 
 class Runner:
@@ -47,7 +48,8 @@ class Runner:
         #: how edges yield, by the number of their section; None: sheet and rubble go in lockstep
         self.yields: Yields | None = ({}, np.zeros((2, 0, 0)))
         self.books, self.water_impulse = np.zeros(1, BOOKS), np.zeros(1, WATER_IMPULSE)
-        self.momenta = np.zeros((3, 6))  #: that plates received since the start, see `books`
+        self.momenta = np.zeros((4, 6))  #: that plates received since the start, see `books`
+        self.bed = -physics.depth  #: height of the sea bed [m]
         self.planar = False  #: plates move in their x-z plane only, while initial rubble settles
         self.window = 0.0  #: length of the last one [s]
         self._rows: tuple[Rows, Rows] = room(4096), room(4096)
@@ -96,8 +98,8 @@ class Runner:
         )
         pressure = self._known_pressure(store)
         sums = Sums(tables.sums, self.books, self.water_impulse, pressure, self.momenta, self._counted)
-        before = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
-        self._run = Run(window, scene, sums, *before)
+        momentum, on_sheet = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
+        self._run = Run(window, scene, sums, momentum, on_sheet, self.momenta[GROUND].copy())
         self.window = 0.0
 
     def go(self, n: int) -> None:
@@ -118,7 +120,7 @@ class Runner:
         keep(sections, self.edges)
         self._pressure = {p.id: run.sums.pressure[i] for i, p in enumerate(store.list)}
         self.power_on_sheet = (float(self.books["on_sheet"][0]) - run.on_sheet) / self.window
-        self._balance(store, run.momentum)
+        self._balance(store, run)
 
     def break_plates(self, store: Store) -> list[Break]:
         """Parts the plates that break at the end of the window; none do while initial rubble settles."""
@@ -156,6 +158,7 @@ class Runner:
             strength=strength,
             shortest=shortest,
             cut=int(self._counted[1]) + 1,
+            bed=self.bed,
         )
 
     def _sides(self, scene: Scene, store: Store) -> Sides:
@@ -177,7 +180,7 @@ class Runner:
     def _surface(self) -> Surface:
         p = self.physics
         bias, mu = 1.0 - BIAS ** (p.substep / p.pace), (coefficient(p.mu_ice_ice), coefficient(p.mu_structure))
-        return Surface(*mu, p.restitution, bias, p.slop, GIVES_WAY * p.pace)
+        return Surface(*mu, p.mu_bed, p.restitution, bias, p.slop, GIVES_WAY * p.pace)
 
     def _known_pressure(self, store: Store) -> Array:
         unknown = np.full(6, np.nan)
@@ -196,10 +199,10 @@ class Runner:
             larger = 4 * len(self._rows[0].point)
             self._rows = grown(self._rows[0], larger), grown(self._rows[1], larger)
 
-    def _balance(self, store: Store, before: Array) -> None:
-        """Mean forces x and z that carry the plates; ``before``: momentum with added mass at the start."""
+    def _balance(self, store: Store, run: Run) -> None:
+        """Mean forces x and z that carry the plates."""
         w, T, tables = self.water_impulse, self.window, store.tables
-        gain = store.plates.moved[:-1] @ store.plates.velocity[:-1, :3] - before
+        gain = store.plates.moved[:-1] @ store.plates.velocity[:-1, :3] - run.momentum
         pair = {n: np.array([float(w[f"{n}_x"][0]), float(w[f"{n}_z"][0])]) / T for n in ("flooded", "dry", "drag")}
         self.budget = {
             "flooded_rubble": pair["flooded"] + tables.hulls.weight.sum(axis=0)[[0, 2]],
@@ -207,6 +210,8 @@ class Runner:
             "drag": pair["drag"],
             "inertia": -gain[[0, 2]] / T,
         }
+        if np.isfinite(self.bed):
+            self.budget["sea_bed"] = (self.momenta[GROUND] - run.ground)[[0, 2]] / T
 
     def after(self, store: Store, sections: SectionTable, time: float) -> None:
         """What follows from a window: phases of the plates. RuntimeError if a motion is not finite."""

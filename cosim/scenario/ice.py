@@ -111,6 +111,9 @@ class Water(Section):
 
     density: Annotated[Density, Limits("900 kg/m^3", "1300 kg/m^3", "1025 kg/m^3")]  #: rho_w [kg/m3]
     gravity: Annotated[Acceleration, Limits("0.1 m/s^2", "100 m/s^2", "9.81 m/s^2")] = 9.81  #: g [m/s2]
+    #: of the water over a level sea bed, on which rubble grounds; default: so deep that nothing reaches it. The sheet
+    #: does not meet the bed, and neither added mass nor drag grow in shallow water [m]
+    depth: Annotated[Length, Limits("1 mm", "12 km", "10 m")] = None
     damping: Coefficient = 0.1  #: hydrodynamic, as share of sqrt(k_f rho_i h) (thesis 4.2.1)
     #: flood: a top of the sheet that is pressed under water fills as those of blocks do (`rubble.backfill`), and where
     #: the sheet has left the water only its weight pulls it down; dry: a Kelvin foundation, linear without end (thesis)

@@ -24,6 +24,7 @@ COLOURS = {
     "drag": "#cc79a7",
     "inertia": "#b8bfc6",
     "held": "#56b4e9",
+    "sea_bed": "#8c510a",
     "staggering": "#f0e442",
 }
 OTHER = "#1d2733"  #: of loads on the sheet

@@ -47,6 +47,8 @@ ENERGY = {
             "impact_sheet_loss",
             "friction_ice_loss",
             "friction_sheet_loss",
+            "impact_bed_loss",
+            "friction_bed_loss",
         ),
     ),
     "water": ("#3a9b5c", ("drag_loss", "dry_top_loss")),

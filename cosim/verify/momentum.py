@@ -123,7 +123,7 @@ def pile_balance(p: dict[str, Any], substeps: int) -> tuple[float, float]:
         scale += np.abs(received - before).sum(axis=0)
         before = received.copy()
     gained = _carried(layer) - start
-    signs = np.array([1.0, 1.0, 1.0]), np.array([-1.0, 1.0, 1.0])
+    signs = np.ones(4), np.array([-1.0, 1.0, 1.0, 1.0])
     errors = [float((np.abs(gained - sign @ received) / scale).max()) for sign in signs]
     return errors[0], errors[1]
 

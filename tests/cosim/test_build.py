@@ -87,6 +87,7 @@ def test_a_long_step_has_as_many_windows_as_fit_in_it():
 RUBBLE = {
     "friction_ice_ice": ("0.21", "mu_ice_ice", 0.21),
     "friction_structure": ("0.22", "mu_structure", 0.22),
+    "friction_sea_bed": ("0.24", "mu_bed", 0.24),
     "restitution": ("0.23", "restitution", 0.23),
     "form_drag": ("0.24", "form_drag", 0.24),
     "skin_drag": ("0.025", "skin_drag", 0.025),
@@ -102,6 +103,14 @@ def port_of(*overrides):
     s = scenario(*overrides)
     structure = build_structure(s)
     return build_rubble(s, structure, build_sheet(s, build_ice(s), structure).grid)
+
+
+def test_water_is_as_deep_as_it_is_told_and_nothing_is_lost_on_its_bed():
+    deep, shallow, abyss = port_of(), port_of("water.depth='7 m'"), port_of("water.depth='300 m'")
+    assert deep.physics.depth == np.inf
+    assert shallow.physics.depth == 7.0
+    assert shallow.layer.domain.depth == deep.layer.domain.depth
+    assert abyss.layer.domain.depth == 300.0
 
 
 @pytest.mark.parametrize("key", RUBBLE)

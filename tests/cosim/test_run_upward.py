@@ -115,7 +115,6 @@ def test_a_sheet_that_leaves_the_water_is_an_event():
         ("structure.toe_depth='0.9 m'", "draft"),
         ("structure.breaking='sideways'", "'downward' or 'upward'"),
         ("structure.neck_radius='3 m'", "below the waterline radius"),
-        ("rubble.initial_volume='10 m^3'", "downward-breaking"),
     ],
 )
 def test_faults(override, says):

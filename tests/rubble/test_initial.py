@@ -1,4 +1,4 @@
-"""Initial rubble: a stated volume of a stated porosity comes to rest under the ice; its slope is a result."""
+"""Initial rubble: a stated volume of a stated porosity comes to rest at the ice; its slope is a result."""
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from rubble.initial import CALM, PACKED, settle
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
+from rubble.pile import flank
 from rubble.sheet import SheetMotion
 
 H, PITCH, RHO_I, RHO_W = 3.0, 5.6, 846.0, 1006.0
@@ -17,13 +18,13 @@ SHAPE = cone(np.radians(45), 15.0, 9.0, top=5.0, toe_depth=20.0)
 UNDER = -H * RHO_I / RHO_W
 
 
-def pile(volume, sections, seed=2018, mu=0.1, threads=1, porosity=0.3):
+def pile(volume, sections, seed=2018, mu=0.1, threads=1, porosity=0.3, pitch=PITCH, lengths=(0.5, 1.5), **more):
     physics = RubblePhysics(
-        rho_i=RHO_I, rho_w=RHO_W, thickness=H, mu_ice_ice=mu, restitution=0.1, added_mass=0.2, added_inertia=0.2
+        rho_i=RHO_I, rho_w=RHO_W, thickness=H, mu_ice_ice=mu, restitution=0.1, added_mass=0.2, added_inertia=0.2, **more
     )
     layer = RubbleLayer(
         physics,
-        PITCH,
+        pitch,
         domain=Domain(x_max=21.0, depth=60.0, y_max=90.0),
         threads=threads,
         solids=lambda y: revolved(convex_parts(*SHAPE.section(y, -20.0, 5.0, 1e-3))),
@@ -37,7 +38,7 @@ def pile(volume, sections, seed=2018, mu=0.1, threads=1, porosity=0.3):
             SheetMotion(x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H),
         )
         fronts[key] = (face, UNDER)
-    return layer, settle(layer, fronts, volume, seed, porosity=porosity)
+    return layer, settle(layer, fronts, volume, seed, porosity=porosity, lengths=lengths)
 
 
 def check(found, volume):
@@ -101,3 +102,89 @@ def test_rubble_that_rises_beside_the_sheet_has_no_profile():
 def test_no_volume_is_refused():
     with pytest.raises(ValueError, match="more than 0"):
         pile(0.0, (0,))
+
+
+def lengths_of(layer):
+    """Of the blocks, in thicknesses."""
+    return np.array([b.mass / (RHO_I * H * b.width) / H for b in layer.blocks])
+
+
+@pytest.mark.slow
+def test_the_mesh_leaves_porosity_and_sizes_alone():
+    """Eight sections, and four twice as wide: as many blocks in each section's share, as long as ever."""
+    fine, narrow = pile(1500.0, range(-4, 4), mu="rate-dependent", pitch=0.5 * PITCH)
+    coarse, wide = pile(1500.0, range(-2, 2), mu="rate-dependent")
+    assert narrow.porosity == pytest.approx(wide.porosity, abs=0.04)
+    assert len(fine.blocks) * fine.pitch == pytest.approx(len(coarse.blocks) * coarse.pitch, rel=0.03)
+    for layer in (fine, coarse):
+        found, count = lengths_of(layer), len(layer.blocks)
+        spread = 1.0 / np.sqrt(12.0)  # even between 0.5 and 1.5
+        assert found.mean() == pytest.approx(1.0, abs=3.0 * spread / np.sqrt(count))
+        assert found.std() == pytest.approx(spread, rel=0.2)
+
+
+def test_blocks_have_the_lengths_that_are_asked_for():
+    layer, found = pile(900.0, (0, 1), lengths=(2.0, 2.5))
+    assert lengths_of(layer) == pytest.approx(2.25, abs=0.4)
+    assert lengths_of(layer).mean() == pytest.approx(2.25, rel=0.1)
+    assert found.volume == pytest.approx(900.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("angle", [20.0, 35.0])
+def test_the_angle_of_a_flank_is_that_of_the_wedge(angle):
+    """Also where blocks stick out of it: one corner a thickness deep moves it by less than half a degree."""
+    x, slope = np.arange(0.05, 40.0, 0.1), np.tan(np.radians(angle))
+    wedge = np.maximum(12.0 - slope * x, 0.0)
+    assert np.degrees(flank([wedge], 0.1)) == pytest.approx(angle, abs=0.05)
+    rough = [np.where(wedge > 0.0, wedge + shift, 0.0) for shift in (-0.5, 0.0, 0.5)]
+    assert np.degrees(flank(rough, 0.1)) == pytest.approx(angle, abs=0.3)
+    corner = wedge + np.where(np.abs(x - 3.0) < 0.5, H, 0.0)
+    assert np.degrees(flank([corner, wedge, wedge, wedge, wedge], 0.1)) == pytest.approx(angle, abs=0.5)
+    assert np.isnan(flank([], 0.1))
+
+
+def test_a_pile_in_shallow_water_grounds_and_spreads():
+    """Three quarters as deep as it would be: nothing below the bed, a flatter pile, the sheet lifted as ever."""
+    _, deep = pile(900.0, (0, 1))
+    depth = -UNDER + 0.75 * deep.depth
+    layer, found = pile(900.0, (0, 1), depth=depth)
+    assert min(b.outline[:, 1].min() for b in layer.blocks) > -depth - 0.02 * H
+    assert found.depth <= 0.75 * deep.depth + 0.05 * H
+    assert found.slope < deep.slope - np.radians(2.0)
+    assert found.force == pytest.approx(900.0 * (RHO_W - RHO_I) * 9.81 + layer.budget["sea_bed"][1], rel=0.03)
+    assert found.volume == pytest.approx(900.0, rel=1e-12)
+
+
+UP = cone(np.radians(45), 15.0, 4.0, top=11.0, toe_depth=8.0, breaking="upward")
+FREEBOARD = H * (1.0 - RHO_I / RHO_W)
+
+
+def on_top(volume, sections, seed=2018, mu=0.3):
+    """Rubble on the sheet before a cone that lifts it."""
+    layer = RubbleLayer(
+        RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H, mu_ice_ice=mu, restitution=0.1),
+        PITCH,
+        domain=Domain(x_max=25.0, depth=60.0, y_max=90.0),
+        solids=lambda y: revolved(convex_parts(*UP.section(y, -8.0, 11.0, 1e-3))),
+    )
+    fronts = {}
+    for key in sections:
+        front = float(UP.face_x(layer.centre(key), FREEBOARD - H))
+        x = np.arange(front - 1.4, front - 60.0, -2.8)
+        layer.set_sheet(key, SheetMotion(x, np.full(len(x), FREEBOARD - H / 2), front, np.zeros((len(x), 2)), H))
+        fronts[key] = (min(float(UP.face_x(layer.centre(key), FREEBOARD)), front), FREEBOARD)
+    return layer, settle(layer, fronts, volume, seed, above=True)
+
+
+def test_before_an_upward_cone_rubble_lies_on_the_sheet_with_its_dry_weight():
+    layer, found = on_top(600.0, (0, 1))
+    weight = 600.0 * RHO_I * 9.81
+    assert found.calm <= CALM
+    assert found.force == pytest.approx(weight, rel=0.03)  # but for what lies in the water between front and slope
+    assert found.force != pytest.approx(600.0 * (RHO_W - RHO_I) * 9.81, rel=0.5)
+    on_sheet = sum(float(layer.sheet_forces(k)[:, 2].sum()) for k in layer.sections)
+    assert on_sheet < -0.5 * weight
+    assert 0.2 < found.porosity < 0.4
+    assert np.radians(10) < found.slope < np.radians(45)
+    dry = [b for b in layer.blocks if b.outline[:, 1].min() > 0.0]
+    assert len(dry) > 0.8 * len(layer.blocks)

@@ -29,6 +29,13 @@ def ice_floats(m: Any) -> Faults:
         yield fault("ice.density", f"this ice sinks; use less than the water's {m.water.density:g} kg/m^3")
 
 
+def ice_floats_over_the_bed(m: Any) -> Faults:
+    """Deeper than its draft."""
+    draft = m.ice.thickness * m.ice.density / m.water.density
+    if m.water.depth is not None and m.water.depth <= draft:
+        yield fault("water.depth", f"the floe stands on the sea bed; use more than its draft {draft:.4g} m")
+
+
 def compression_is_strongest(m: Any) -> Faults:
     """The envelope (4.6) has its corner in compression; ice bears several times more there than in tension."""
     for key in ("tensile_strength", "flexural_strength", "upward_flexural_strength", "downward_flexural_strength"):
@@ -69,6 +76,7 @@ RULES = (
     fields_are_drawn_or_read,
     stiffness_is_positive,
     ice_floats,
+    ice_floats_over_the_bed,
     compression_is_strongest,
     criteria_have_their_strengths,
 )

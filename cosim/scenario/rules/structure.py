@@ -102,16 +102,6 @@ def ice_meets_the_slope(m: Any) -> Faults:
         yield fault("structure.toe_depth", f"the ice passes under the slope; use more than its draft {draft:.4g} m")
 
 
-def rubble_lies_under_the_sheet(m: Any) -> Faults:
-    """Before the run."""
-    if m.structure.breaking == "upward" and m.rubble.initial_volume > 0.0:
-        yield fault(
-            "rubble.initial_volume",
-            "initial rubble settles under the sheet, before a downward-breaking "
-            'structure; start an upward-breaking one without: "0 m^3"',
-        )
-
-
 def ice_can_slide(m: Any) -> Faults:
     """Fz / Fx = (1 - mu tan a) / (tan a + mu) of a face that is slid along turns its sign at mu = 1 / tan a."""
     slope = slope_at_waterline(m)
@@ -136,6 +126,5 @@ RULES = (
     ends_at_its_tip,
     profile_is_that_of_a_body,
     ice_meets_the_slope,
-    rubble_lies_under_the_sheet,
     ice_can_slide,
 )

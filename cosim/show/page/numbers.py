@@ -24,6 +24,7 @@ MEANING = {
     "drag": "drag of the water on blocks and sheet",
     "inertia": "less the gain of momentum of blocks and sheet",
     "held": "supports of the sheet, the thrust of its back edge",
+    "sea bed": "sea bed under grounded blocks; minus it is the force on the bed",
     "staggering": "lag between sheet and rubble, no physics",
     "residual": "what the terms miss of the total",
 }

@@ -1,0 +1,79 @@
+"""The sea bed: level ground, on which rubble comes to stand.
+
+It is the half-space below a height. A convex outline reaches deepest into a half-space with its corners, so each corner
+of a slice that stands below the bed is one contact: nothing has to be looked for, and its identity is slice and corner.
+The normal points up; what the contact carries before the ice crushes is that of one with the structure.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rubble.compiled import compiled
+from rubble.gather import Scene
+from rubble.plates import times
+from rubble.rows import BED, Rows, go_on, set_arms, set_way
+from rubble.slots import BED_SLOT
+
+
+@compiled(nogil=True)
+def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
+    """Adds a row for each corner of a slice below the bed; returns the number of rows, -1 if there is no room.
+
+    ``old`` has ``before`` rows; those of the bed stand behind those of banks, in the order of slices and corners.
+    ``cut``: slices are new.
+    """
+    if not np.isfinite(scene.bed):
+        return found
+    plates, slices, last, c = scene.plates, scene.slices, 0, found
+    while last < before and old.point[last].kind != BED:
+        last += 1
+    for s in range(slices.piece.shape[0]):
+        k, start = slices.plate[s], c
+        r, b, p = plates.rotation[k], slices.anchor[s], plates.position[k]
+        h = max(np.hypot(r[0, 0], r[2, 0]), 1e-12)
+        cos, sin = r[0, 0] / h, r[2, 0] / h
+        ox, _, oz = times(r, b[0], b[1], b[2])
+        for i in range(slices.sides[s]):
+            x, z = slices.corners[s, i, 0], slices.corners[s, i, 1]
+            depth = scene.bed - (p[2] + oz + sin * x + cos * z)
+            if depth < 0.0:
+                continue
+            if c >= rows.point.shape[0]:
+                return -1
+            point = rows.point[c]
+            point.a, point.b, point.edge, point.kind = plates.moved.shape[0] - 1, k, -1, BED
+            point.slot_a, point.slot_b, point.feature, point.depth = BED_SLOT, s, i, depth
+            point.x, point.y, point.z = p[0] + ox + cos * x - sin * z, slices.y[s], scene.bed - 0.5 * depth
+            set_way(rows.way[c, 0], 0.0, 0.0, 1.0)
+            set_way(rows.way[c, 1], -1.0, 0.0, 0.0)
+            set_way(rows.way[c, 2], 0.0, -1.0, 0.0)
+            set_arms(rows, c, plates, scene.edges)
+            while last < before and old.point[last].kind == BED and _earlier(old, last, s, i):
+                last += 1
+            same = last < before and old.point[last].kind == BED
+            same = same and old.point[last].slot_b == s and old.point[last].feature == i
+            go_on(rows, c, old, last if same else -1, 0.0, cut)
+            c += 1
+        _bounds(scene, rows, start, c)
+    return c
+
+
+@compiled(nogil=True)
+def _earlier(old: Rows, c: int, s: int, i: int) -> bool:
+    p = old.point[c]
+    earlier: bool = p.slot_b < s or (p.slot_b == s and p.feature < i)
+    return earlier
+
+
+@compiled(nogil=True)
+def _bounds(scene: Scene, rows: Rows, start: int, end: int) -> None:
+    """What the contacts of a slice carry before they crush: strength times width times length, shared by them."""
+    low, high, length = np.inf, -np.inf, scene.shortest
+    for c in range(start, end):
+        point = rows.point[c]
+        low, high = min(low, point.x), max(high, point.x)
+        length = max(length, 2.0 * point.depth, high - low)
+    for c in range(start, end):
+        width = min(scene.pitch, scene.widths[rows.point[c].slot_b])
+        rows.point[c].most = scene.strength * width * length / (end - start)
