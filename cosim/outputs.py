@@ -5,7 +5,7 @@
 * What was simulated (recordings, tables of a sweep) grows at its place and is kept; a recording unless the user says
   ``--force``.
 * What can be drawn again (pages, pictures) is written under another name and then renamed.
-* A log is appended to, if it is one.
+* A log is appended to, if it is one; a recording is gone on with by the run that wrote it, `cosim resume`.
 * A file that is being written is locked: a second writer is refused.
 """
 
@@ -35,6 +35,7 @@ MAGIC = {
     ".csv": b"variant,",
     ".parquet": b"PAR1",
     ".rows": b"# cosim rows",
+    ".checkpoint": b"# cosim checkpoint\n",
     ".ice": b'"x","y","what"',
     ".table.csv": b"time [s],",
     ".nc": b"\x89HDF\r\n\x1a\n",
@@ -132,6 +133,15 @@ def grow(path: Path, kind: str, force: bool = False) -> IO[bytes]:
         number = _locked(target, path)
         os.ftruncate(number, 0)
         return os.fdopen(number, "wb")
+    except OSError as error:
+        raise trouble(path, error) from error
+
+
+def reopen(path: Path, kind: str) -> IO[bytes]:
+    """Open a file that `grow` has opened once, to read and to write from its beginning, locked until it is closed."""
+    writable(path, kind, force=True)
+    try:
+        return os.fdopen(_locked(resolved(path), path), "r+b")
     except OSError as error:
         raise trouble(path, error) from error
 

@@ -19,7 +19,7 @@ ALLOWED = {
 PORTS = {"coupling/sheet_port/": {"lattice"}, "coupling/rubble_port/": {"rubble"}}
 #: library -> the only files that may import it
 LIBRARIES = {
-    "mcap": {f"cosim/recording/{name}.py" for name in ("writer", "reader", "records", "recover")},
+    "mcap": {f"cosim/recording/{name}.py" for name in ("writer", "reader", "records", "recover", "retrace")},
     "zstandard": {"cosim/recording/records.py"},
     "mcap_protobuf": {"cosim/recording/writer.py"},
     "rerun": {"cosim/show/replay.py", "cosim/show/layout.py", "cosim/show/viewer.py"},
