@@ -21,6 +21,7 @@ from cosim.checkpoint.arrays import Memory, written
 Value = Any  #: see above
 GIVEN: dict[str, Any] = {}
 CODE = (types.FunctionType, types.BuiltinFunctionType, types.MethodType, types.ModuleType, type, partial, np.ufunc)
+PACKAGES = ("cosim", "coupling", "lattice", "rubble")  #: whose classes may tell what of them is kept
 HEAP = 1 << 9  #: flag of a class that is written in Python
 
 
@@ -54,6 +55,11 @@ def own_state(cls: type) -> bool:
     """Whether instances tell themselves what of them is kept; those of dataclasses with slots tell their fields."""
     own: Any = cls.__getstate__
     return own is not object.__getstate__ and own.__module__ != "dataclasses"
+
+
+def is_ours(module: str) -> bool:
+    """Whether a module is one of this project."""
+    return module.split(".")[0] in PACKAGES
 
 
 def name_of(cls: type) -> str:
@@ -107,7 +113,7 @@ class _Walk:
             yield from (cls.__name__, self._items(thing, way))
         elif issubclass(cls, tuple) and hasattr(cls, "_fields"):
             yield from ("row", name_of(cls), self._items(thing, way))
-        elif all(c.__flags__ & HEAP for c in cls.__mro__[:-1]):
+        elif all(c.__flags__ & HEAP for c in cls.__mro__[:-1]) and (not own_state(cls) or is_ours(cls.__module__)):
             kept = thing.__getstate__() if own_state(cls) else attributes(thing)
             yield from ("object", name_of(cls), {k: self.value(v, f"{way}.{k}") for k, v in kept.items()})
         else:

@@ -18,9 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cosim.checkpoint.arrays import read, seen
-from cosim.checkpoint.graph import attributes, name_of, own_state
+from cosim.checkpoint.graph import attributes, is_ours, name_of, own_state
 
-PACKAGES = ("cosim", "coupling", "lattice", "rubble")
 MISSING = object()  #: no twin at this place
 
 
@@ -140,7 +139,7 @@ def _class(name: str, twin: Any) -> type:
     if name == name_of(type(twin)):
         return type(twin)
     module, _, path = name.partition(":")
-    found: Any = sys.modules.get(module) if module.split(".")[0] in PACKAGES else None
+    found: Any = sys.modules.get(module) if is_ours(module) else None
     for part in path.split("."):
         found = None if found is None or part.startswith("__") else vars(found).get(part)
     if not isinstance(found, type) or name_of(found) != name:

@@ -108,7 +108,7 @@ def resume(
     for text in run.warnings:
         talk.warn(text)
     talk.detail(f"goes on at {run.since.t_ns / 1e9:g} s")
-    observers: list[Observer] = [ProgressBar(talk), Recorder(recording, since=run.since)]
+    observers: list[Observer] = [Recorder(recording, since=run.since), ProgressBar(talk)]
     _tell(simulate(run.scenario, observers, _at_end(ice), run.kept), recording, as_json, talk)
 
 
