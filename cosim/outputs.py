@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 import stat
+import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -26,6 +27,7 @@ try:
 except ImportError:  # Windows: a file that exists is refused there, two writers with --force are not told apart
     fcntl = None
 
+ASLEEP = 60.0  #: where files are not locked: time without a window after which a run counts as gone [s]
 #: how a file of a kind begins
 MAGIC = {
     ".mcap": b"\x89MCAP0\r\n",
@@ -159,6 +161,18 @@ def append(path: Path, kind: str) -> IO[bytes]:
         return file
     except OSError as error:
         raise trouble(path, error) from error
+
+
+def is_growing(path: Path) -> bool:
+    """Whether somebody is writing a file that `grow` or `reopen` has opened."""
+    if fcntl is None:
+        return time.time() - path.stat().st_mtime < ASLEEP
+    with path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
 
 
 def drop(path: Path) -> None:

@@ -24,6 +24,9 @@ class Shown:
     web: Annotated[bool, typer.Option("--web", help="serve the viewer to a browser on this machine")] = False
     screenshot: Annotated[Path | None, typer.Option(help="write a picture (.png), no screen needed")] = None
     video: Annotated[Path | None, typer.Option(help="write a film of the recorded frames (.mp4)")] = None
+    follow: Annotated[
+        bool, typer.Option("--follow", help="go along with a run that is still being recorded, until it ends")
+    ] = False
 
     def check(self, recording: Path) -> None:
         """One of them at most, and its place can be written."""
@@ -34,6 +37,8 @@ class Shown:
         )
         if sum((self.web, *(path is not None for _, path, _ in places))) > 1:
             raise InputError("--save, --web, --screenshot and --video exclude each other; give one of them")
+        if self.follow and (self.screenshot is not None or self.video is not None):
+            raise InputError("--follow goes with a viewer or with --save; leave out --screenshot and --video")
         for _, path, kind in places:
             if path is not None:
                 writable(path, kind, [recording])
@@ -60,7 +65,11 @@ def replay(
     os.environ.setdefault("RUST_LOG", "off")  # rerun's own log; what goes wrong it says to us as well
     from cosim.show import replay as show
 
-    if shown.save is not None:
+    if shown.follow:
+        from cosim.show.follow import follow
+
+        follow(recording, shown.save, shown.web)
+    elif shown.save is not None:
         show.save(recording, shown.save)
     elif shown.web:
         show.serve(recording)

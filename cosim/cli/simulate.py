@@ -37,6 +37,8 @@ class RunFiles:
         str | None, typer.Option(metavar="TIME", help="as --set recording.checkpoint_every: for `cosim resume`")
     ] = None
 
+    follow: Annotated[bool, typer.Option("--follow", help="show the run in rerun while it is recorded")] = False
+
     @property
     def overrides(self) -> list[str]:
         """What is said of the scenario here."""
@@ -44,6 +46,8 @@ class RunFiles:
 
     def check(self) -> None:
         """Before anything is simulated."""
+        if self.follow and self.output is None:
+            raise InputError("--follow shows what is recorded; name a recording with -o run.mcap")
         if self.output is not None:
             writable(self.output, ".mcap", force=self.force)
         if self.ice is not None:
@@ -66,6 +70,7 @@ def run(
     from cosim.recording.writer import Recorder
     from cosim.scenario.loading import load_scenario
     from cosim.show.check import fact_lines, judged
+    from cosim.show.companion import Companion
     from cosim.show.progress import ProgressBar
     from cosim.watched import simulate
 
@@ -84,6 +89,7 @@ def run(
         return
     if files.output is not None:
         observers.append(Recorder(files.output, force=files.force))
+        observers += [Companion(files.output)] if files.follow else []
     _tell(simulate(loaded, observers, _at_end(files.ice)), files.output, as_json, talk)
 
 

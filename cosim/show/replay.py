@@ -31,10 +31,12 @@ from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
 from cosim.show.pictures import still_meshes
 from cosim.show.viewer import screen_viewer, web_viewer
-from coupling.interface import NS, PHASES, Phase
+from coupling.interface import NS, PHASES, Array, Event, Phase
 
 APPLICATION = "cosim"
 TOTAL_RGB = (235, 235, 235)
+#: of the load: entity, name, phase, colour; drawn in the order of their entities: the total first, so that it hides none
+CURVES = (("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES)))
 
 
 def save(recording: Path, out: Path) -> None:
@@ -78,21 +80,36 @@ def send(sink: rr.RecordingStream, recording: Path, run: RunData) -> None:
     _send_loads(sink, run)
     sink.log("about", rr.TextDocument(about(run), media_type="text/markdown"), static=True)
     for event in run.events:
-        sink.set_time(TIMELINE, duration=event.t_ns / NS)
-        sink.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
+        send_event(sink, event)
     scene, section = scene_of(run), shown_section(run, recording)
+    send_still(sink, recording, scene, section)
+    for picture in recorded_pictures(recording):
+        send_picture(sink, picture, scene, section)
+    sink.flush()
+
+
+def send_event(sink: rr.RecordingStream, event: Event) -> None:
+    """A line of the log."""
+    sink.set_time(TIMELINE, duration=event.t_ns / NS)
+    sink.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
+
+
+def send_still(sink: rr.RecordingStream, recording: Path, scene: Scene, section: int) -> None:
+    """What does not move."""
     for mesh in still_meshes(recorded_structure(recording), scene):
         sink.log(f"world/{mesh.name}", _mesh(mesh), static=True)
     for strips in still_strips(scene, section):
         sink.log(strips.name, _strips(strips), static=True)
-    for picture in recorded_pictures(recording):
-        sink.set_time(TIMELINE, duration=picture.t_ns / NS)
-        for mesh in pictures.meshes(picture, scene.thickness):
-            sink.log(f"world/{mesh.name}", _mesh(mesh))
-        for strips in moving_strips(scene, picture, section):
-            sink.log(strips.name, _strips(strips))
-        sink.log("world/load", _arrow(picture, scene))
-    sink.flush()
+
+
+def send_picture(sink: rr.RecordingStream, picture: Picture, scene: Scene, section: int) -> None:
+    """A recorded frame."""
+    sink.set_time(TIMELINE, duration=picture.t_ns / NS)
+    for mesh in pictures.meshes(picture, scene.thickness):
+        sink.log(f"world/{mesh.name}", _mesh(mesh))
+    for strips in moving_strips(scene, picture, section):
+        sink.log(strips.name, _strips(strips))
+    sink.log("world/load", _arrow(picture, scene))
 
 
 def shown_section(run: RunData, recording: Path) -> int:
@@ -135,20 +152,28 @@ def about(run: RunData) -> str:
 
 
 def _send_loads(sink: rr.RecordingStream, run: RunData) -> None:
-    # curves are drawn in the order of their paths: the total first, so that it hides no phase
-    series = [("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES))]
-    run = run.lasting
     scale = load_scale(run)
+    name_curves(sink)
     index = rr.TimeColumn(TIMELINE, duration=run.t)
+    for path, values in curves(run.lasting):
+        sink.send_columns(path, indexes=[index], columns=rr.Scalars.columns(scalars=values / scale.size))
+
+
+def name_curves(sink: rr.RecordingStream) -> None:
+    """How each curve of the load looks."""
     for axis in ("fx", "fz"):
-        for key, name, phase, rgb in series:
-            path = f"load/{axis}/{key}"
+        for key, name, phase, rgb in CURVES:
             width = 3.5 if phase is None else 1.6
             # no aggregation: the viewer would draw means over what falls on one pixel, and the peak would be lower
             line = rr.SeriesLines(names=name, colors=rgb, widths=width, aggregation_policy=AggregationPolicy.Off)
-            sink.log(path, line, static=True)
-            values = rr.Scalars.columns(scalars=run.component(axis, phase) / scale.size)
-            sink.send_columns(path, indexes=[index], columns=values)
+            sink.log(f"load/{axis}/{key}", line, static=True)
+
+
+def curves(run: RunData) -> Iterator[tuple[str, Array]]:
+    """Where each curve goes, and its values (n,) [N]."""
+    for axis in ("fx", "fz"):
+        for key, _, phase, _ in CURVES:
+            yield f"load/{axis}/{key}", run.component(axis, phase)
 
 
 def _mesh(mesh: pictures.Mesh) -> Any:
