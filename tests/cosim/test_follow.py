@@ -3,7 +3,6 @@
 import os
 import signal
 import subprocess
-import threading
 import time
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from cosim.recording.tail import Tail, begun
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 from cosim.show.companion import Companion
-from cosim.show.follow import follow
 
 OPTIONS = ["scenario.duration='6 s'", "sheet.nodes=[20,20]", "recording.every='500 ms'"]
 
@@ -94,33 +92,21 @@ def printed(path):
 
 
 def test_a_run_is_shown_while_it_is_recorded(synthetic, tmp_path):
-    """Into a file instead of a viewer: curves, ice, sections and log are in it."""
+    """By a process of its own, as of `cosim run --follow`, here into a file: curves, ice, sections, log; it ends."""
     path, out = tmp_path / "run.mcap", tmp_path / "run.rrd"
-    child = written(synthetic, path)
-    until_there(path)
-    follow(path, out)
-    os.waitpid(child, 0)
-    text = printed(out)
-    for entity in ("load/fx/all", "load/fz/sliding", "world/sheet", "section", "plan", "events", "about"):
-        assert entity in text, entity
-
-
-def test_a_run_starts_its_own_viewer(synthetic, tmp_path):
-    """`cosim run --follow`: a process of its own, which ends after the run."""
-    path, out = tmp_path / "run.mcap", tmp_path / "run.rrd"
-    companion = Companion(path, ["--save", str(out)])
-    recorder = Recorder(path)
+    recorder, companion = Recorder(path), Companion(path, ["--save", str(out)])
     scenario = load_scenario("van_vliet_2018_floe_165m", OPTIONS)
     for observer in (recorder, companion):
         observer.on_start(synthetic.run_info(scenario))
-    slow = threading.Event()
     for frame in synthetic.frames(scenario):
         recorder.on_frame(frame)
-        slow.wait(0.001)
+        time.sleep(0.005)
     companion.on_close()
     recorder.on_close()
     assert companion.process.wait(timeout=120) == 0
-    assert out.stat().st_size > 10_000
+    text = printed(out)
+    for entity in ("load/fx/all", "load/fz/sliding", "world/sheet", "section", "plan", "events", "about"):
+        assert entity in text, entity
 
 
 def test_options_that_do_not_go_together(cosim, run_file, tmp_path):
