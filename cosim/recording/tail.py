@@ -13,6 +13,7 @@ from cosim.recording.reader import read_run
 from cosim.recording.records import RecordingError, Records
 
 EVERY = 0.2  #: time between two looks at the file [s]
+PATIENCE = 1.0  #: time in which a file that is there is locked by who writes it [s]
 
 
 class Tail(Records):
@@ -45,12 +46,14 @@ class Tail(Records):
 
 
 def begun(path: Path) -> RunData:
-    """A recording that holds a window, or will soon; RecordingError if its run ends before."""
+    """A recording that holds a window, or will soon; RecordingError if nobody is writing it for `PATIENCE`."""
+    until = time.monotonic() + PATIENCE
     while True:
-        grows = is_growing(path) if path.is_file() else False
+        if path.is_file() and is_growing(path):
+            until = time.monotonic() + PATIENCE
         try:
             return read_run(path)
         except RecordingError:
-            if not grows:
+            if time.monotonic() > until:
                 raise
         time.sleep(EVERY)

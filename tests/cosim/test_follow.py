@@ -40,15 +40,9 @@ def written(synthetic, path, stop_after=None, observers=()):
     os._exit(0)
 
 
-def until_there(path):
-    while not path.exists():
-        time.sleep(0.001)
-
-
 def test_all_of_a_growing_file_arrives_in_order(synthetic, tmp_path):
     path = tmp_path / "run.mcap"
     child = written(synthetic, path)
-    until_there(path)
     waited = []
     assert len(begun(path).t_ns) >= 1
     tail = Tail(path, lambda: (waited.append(1), time.sleep(0.002)))
@@ -64,7 +58,7 @@ def test_all_of_a_growing_file_arrives_in_order(synthetic, tmp_path):
 def test_it_ends_with_a_run_that_is_killed(synthetic, tmp_path):
     path = tmp_path / "run.mcap"
     child = written(synthetic, path, stop_after=30)
-    until_there(path)
+    begun(path)
     tail = Tail(path, lambda: time.sleep(0.002))
     loads = [r for r in in_order(path, tail) if isinstance(r, tuple) and r[0] == "/load/structure"]
     os.waitpid(child, 0)
