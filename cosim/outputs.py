@@ -5,7 +5,7 @@
 * What was simulated (recordings, tables of a sweep) grows at its place and is kept; a recording unless the user says
   ``--force``.
 * What can be drawn again (pages, pictures) is written under another name and then renamed.
-* A log is appended to, if it is one.
+* A log is appended to, if it is one; a recording is gone on with by the run that wrote it, `cosim resume`.
 * A file that is being written is locked: a second writer is refused.
 """
 
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import os
 import stat
+import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -26,6 +27,7 @@ try:
 except ImportError:  # Windows: a file that exists is refused there, two writers with --force are not told apart
     fcntl = None
 
+ASLEEP = 60.0  #: where files are not locked: time without a window after which a run counts as gone [s]
 #: how a file of a kind begins
 MAGIC = {
     ".mcap": b"\x89MCAP0\r\n",
@@ -35,6 +37,7 @@ MAGIC = {
     ".csv": b"variant,",
     ".parquet": b"PAR1",
     ".rows": b"# cosim rows",
+    ".checkpoint": b"# cosim checkpoint\n",
     ".ice": b'"x","y","what"',
     ".table.csv": b"time [s],",
     ".nc": b"\x89HDF\r\n\x1a\n",
@@ -136,6 +139,15 @@ def grow(path: Path, kind: str, force: bool = False) -> IO[bytes]:
         raise trouble(path, error) from error
 
 
+def reopen(path: Path, kind: str) -> IO[bytes]:
+    """Open a file that `grow` has opened once, to read and to write from its beginning, locked until it is closed."""
+    writable(path, kind, force=True)
+    try:
+        return os.fdopen(_locked(resolved(path), path), "r+b")
+    except OSError as error:
+        raise trouble(path, error) from error
+
+
 def append(path: Path, kind: str) -> IO[bytes]:
     """Open a file of lines at its end, locked and unbuffered until it is closed; a new one begins with its kind."""
     writable(path, kind)
@@ -149,6 +161,18 @@ def append(path: Path, kind: str) -> IO[bytes]:
         return file
     except OSError as error:
         raise trouble(path, error) from error
+
+
+def is_growing(path: Path) -> bool:
+    """Whether somebody is writing a file that `grow` or `reopen` has opened."""
+    if fcntl is None:
+        return time.time() - path.stat().st_mtime < ASLEEP
+    with path.open("rb") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
 
 
 def drop(path: Path) -> None:

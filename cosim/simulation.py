@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -14,9 +14,10 @@ from threadpoolctl import threadpool_limits
 
 from cosim.analysis.lights import trust
 from cosim.analysis.moments import moments
-from cosim.analysis.run_data import AXES, COMPONENTS, RunData
+from cosim.analysis.run_data import COMPONENTS, RunData, event_json
 from cosim.analysis.volumes import volumes
 from cosim.build import build, run_info
+from cosim.checkpoint.keeping import Checkpoints
 from cosim.moments import Grip, grip_of
 from cosim.observer import Observer
 from cosim.scenario.lengths import characteristic_length
@@ -59,6 +60,28 @@ class RunResult:
     staggering: list[tuple[float, float]] = field(default_factory=list)  #: Fx and Fz of every window [N]
     rubble: list[tuple[float, float]] = field(default_factory=list)  #: stored and cleared after every window [kg]
     grips: list[Grip] = field(default_factory=list)  #: moments and point of attack of every window
+
+    def kept(self) -> dict[str, Any]:
+        """What a checkpoint keeps of it; see `go_on`."""
+        return {
+            "wall_s": self.wall_s,
+            "t_ns": np.array([t for t, _ in self.loads], np.int64),
+            "load": np.array([load for _, load in self.loads]),
+            "moment": np.array([g.moment for g in self.grips]),
+            "weight": np.array([g.weight for g in self.grips]),
+            "staggering": np.array(self.staggering),
+            "rubble": np.array(self.rubble),
+            "events": self.events,
+        }
+
+    def go_on(self, kept: Mapping[str, Any]) -> None:
+        """Has seen all windows until a checkpoint."""
+        self.wall_s, self.events = kept["wall_s"], list(kept["events"])
+        self.loads = list(zip(kept["t_ns"].tolist(), kept["load"], strict=True))
+        self.grips = [Grip(m, w) for m, w in zip(kept["moment"], kept["weight"], strict=True)]
+        self.staggering = [(x, z) for x, z in kept["staggering"].tolist()]
+        self.rubble = [(stored, cleared) for stored, cleared in kept["rubble"].tolist()]
+        self.t_ns = self.loads[-1][0]
 
     def see(self, frame: Frame, grip: Grip) -> None:
         """Takes in one window."""
@@ -138,43 +161,39 @@ class RunResult:
         }
 
 
-def event_json(e: Event) -> dict[str, Any]:
-    """An event as ``cosim run --json`` prints it; its load is the mean over the averaging time."""
-    return {
-        "time": e.t_ns / NS,
-        "kind": e.kind,
-        **dict(zip(AXES, e.force, strict=True)),
-        "cells": e.cells,
-        "position": list(e.position),
-        "text": e.text,
-        "length": e.length,
-        "area": e.area,
-        "cause": e.cause,
-    }
-
-
 def run_scenario(
-    scenario: Scenario, observers: Sequence[Observer] = (), at_end: Callable[[Scheduler], None] | None = None
+    scenario: Scenario,
+    observers: Sequence[Observer] = (),
+    at_end: Callable[[Scheduler], None] | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> RunResult:
     """Simulates a scenario to its end; observers see every window. They are closed by whoever made them.
 
-    ``at_end`` is called with all participants when the last window is done.
+    ``at_end`` is called with all participants when the last window is done; ``checkpoints`` say where they are written
+    and from which of them the run goes on.
     """
-    began = time.perf_counter()
-    result = RunResult(scenario)
+    result, checkpoints = RunResult(scenario), checkpoints or Checkpoints(scenario)
     with threadpool_limits(1):  # linear algebra adds in the same order on every machine: same scenario, same bits
+        began = time.perf_counter()
         scheduler = build(scenario)
         info = run_info(scenario)
+        if seen := checkpoints.begin(info, scheduler):
+            result.go_on(seen)
+        began -= result.wall_s
         for observer in observers:
             observer.on_start(info)
+        checkpoints.started()
         while scheduler.t_ns < scenario.duration_ns:
             frame = scheduler.macro_step()
             _is_finite(frame)
             result.see(frame, grip_of(frame, scenario.moment_point))
             for observer in observers:
                 observer.on_frame(frame)
+            result.wall_s = time.perf_counter() - began
+            checkpoints.after_window(scheduler, result.kept)
     _finish(result, scheduler)
     _was_touched(result)
+    checkpoints.clear()
     if at_end is not None:
         at_end(scheduler)
     result.wall_s = time.perf_counter() - began

@@ -13,27 +13,35 @@ from cosim.scenario.scenario import Scenario
 from cosim.signals import StopAfterWindow, StoppedError
 
 if TYPE_CHECKING:
+    from cosim.checkpoint.file import Kept
     from coupling.scheduler import Scheduler
 
 
 def simulate(
-    scenario: Scenario, observers: Sequence[Observer], at_end: Callable[[Scheduler], None] | None = None
+    scenario: Scenario,
+    observers: Sequence[Observer],
+    at_end: Callable[[Scheduler], None] | None = None,
+    kept: Kept | None = None,
 ) -> dict[str, Any]:
     """Run and close the observers whatever happens; recordings tell how it ended. What ``cosim run --json`` prints.
 
-    ``at_end`` as in `cosim.simulation.run_scenario`.
+    ``at_end`` as in `cosim.simulation.run_scenario`; ``kept`` is the checkpoint from which the run goes on. New ones
+    are kept beside the first recording.
     """
+    from cosim.checkpoint.keeping import Checkpoints
     from cosim.simulation import run_scenario
 
     watching = [*observers, StopAfterWindow()]
+    recorders = [o for o in observers if isinstance(o, Recorder)]
+    checkpoints = Checkpoints(scenario, next(iter(recorders), None), kept)
     try:
-        result: dict[str, Any] = run_scenario(scenario, watching, at_end).to_json()
-        for recorder in (o for o in observers if isinstance(o, Recorder)):
+        result: dict[str, Any] = run_scenario(scenario, watching, at_end, checkpoints).to_json()
+        for recorder in recorders:
             recorder.lights = result["trust"]
         return result
     except (Exception, StoppedError) as error:
         ending = one_line(explain(error)[0] if isinstance(error, Exception) else str(error))
-        for recorder in (o for o in observers if isinstance(o, Recorder)):
+        for recorder in recorders:
             recorder.ending, recorder.failed = ending, isinstance(error, Exception)
             if isinstance(error, StoppedError) and recorder.recorded_ns > 0:
                 error.kept = str(recorder.path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -62,6 +62,10 @@ class Runner:
         self.broken = 0.0  #: energy that plates have lost by breaking again [J]
         self.edges: Edges
         self._run: Run
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Between two windows: without the one that has ended, which holds addresses of what is made anew."""
+        return {k: v for k, v in vars(self).items() if k not in ("_run", "edges")}
 
     @property
     def contacts(self) -> int:

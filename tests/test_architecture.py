@@ -19,10 +19,10 @@ ALLOWED = {
 PORTS = {"coupling/sheet_port/": {"lattice"}, "coupling/rubble_port/": {"rubble"}}
 #: library -> the only files that may import it
 LIBRARIES = {
-    "mcap": {f"cosim/recording/{name}.py" for name in ("writer", "reader", "records", "recover")},
+    "mcap": {f"cosim/recording/{name}.py" for name in ("writer", "reader", "records", "recover", "retrace")},
     "zstandard": {"cosim/recording/records.py"},
     "mcap_protobuf": {"cosim/recording/writer.py"},
-    "rerun": {"cosim/show/replay.py", "cosim/show/layout.py", "cosim/show/viewer.py"},
+    "rerun": {f"cosim/show/{name}.py" for name in ("replay", "follow", "layout", "viewer")},
     "pyvista": {"cosim/export/vtk.py", "cosim/show/view3d.py"},
     "xarray": {"cosim/export/netcdf.py", "cosim/api/run.py"},
     "rerun_cli": {"cosim/show/viewer.py"},

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -117,3 +118,18 @@ class RunData:
         """Settings of the user over the scenario, as ``a.b=v``."""
         values: list[str] = json.loads(self.metadata.get("overrides", "[]"))
         return values
+
+
+def event_json(e: Event) -> dict[str, Any]:
+    """An event as ``cosim run --json`` prints it; its load is the mean over the averaging time."""
+    return {
+        "time": e.t_ns / NS,
+        "kind": e.kind,
+        **dict(zip(AXES, e.force, strict=True)),
+        "cells": e.cells,
+        "position": list(e.position),
+        "text": e.text,
+        "length": e.length,
+        "area": e.area,
+        "cause": e.cause,
+    }

@@ -29,6 +29,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "keys": authoring.keys,
     "check": authoring.check,
     "run": simulate.run,
+    "resume": simulate.resume,
     "sweep": sweeping.sweep,
     "replay": recordings.replay,
     "compare": recordings.compare,

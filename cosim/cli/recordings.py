@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,6 +16,10 @@ from cosim.cli.options import ForceOption, JsonOption, RunArgument, SeriesSetOpt
 from cosim.cli.output import print_json
 from cosim.errors import InputError
 from cosim.outputs import whole, writable
+
+if TYPE_CHECKING:
+    from cosim.analysis.run_data import RunData
+    from cosim.series.series import Series
 
 
 @dataclass(frozen=True)
@@ -24,8 +30,11 @@ class Shown:
     web: Annotated[bool, typer.Option("--web", help="serve the viewer to a browser on this machine")] = False
     screenshot: Annotated[Path | None, typer.Option(help="write a picture (.png), no screen needed")] = None
     video: Annotated[Path | None, typer.Option(help="write a film of the recorded frames (.mp4)")] = None
+    follow: Annotated[
+        bool, typer.Option("--follow", help="go along with a run that is still being recorded, until it ends")
+    ] = False
 
-    def check(self, recording: Path) -> None:
+    def check(self, recording: Path, series: Path | None) -> None:
         """One of them at most, and its place can be written."""
         places = (
             ("--save", self.save, ".rrd"),
@@ -34,9 +43,13 @@ class Shown:
         )
         if sum((self.web, *(path is not None for _, path, _ in places))) > 1:
             raise InputError("--save, --web, --screenshot and --video exclude each other; give one of them")
+        if self.follow and (self.screenshot is not None or self.video is not None):
+            raise InputError("--follow goes with a viewer or with --save; leave out --screenshot and --video")
+        if series is not None and (self.follow or self.screenshot is not None or self.video is not None):
+            raise InputError("--measured lies over curves of a viewer; leave out --follow, --screenshot and --video")
         for _, path, kind in places:
             if path is not None:
-                writable(path, kind, [recording])
+                writable(path, kind, [recording, *([] if series is None else [series])])
 
 
 @grouped
@@ -49,9 +62,11 @@ def replay(
     section: Annotated[
         float | None, typer.Option(help="y of the section of the picture in m; default where most force acts")
     ] = None,
+    series: Annotated[Path | None, typer.Option("--measured", help="a series over the curves, as of `compare`")] = None,
+    settings: SeriesSetOption = None,
 ) -> None:
     """Look at a recording: in rerun, as a picture, or as a film. Sheet, structure, blocks, sections, loads, events."""
-    shown.check(recording)
+    shown.check(recording, series)
     if (at is not None or section is not None) and shown.screenshot is None:
         raise InputError("--at and --section belong to --screenshot; add --screenshot x.png")
     if shown.screenshot is not None or shown.video is not None:
@@ -60,12 +75,24 @@ def replay(
     os.environ.setdefault("RUST_LOG", "off")  # rerun's own log; what goes wrong it says to us as well
     from cosim.show import replay as show
 
-    if shown.save is not None:
-        show.save(recording, shown.save)
+    measured = None if series is None else partial(_in_time_of, series, settings or ())
+    if shown.follow:
+        from cosim.show.follow import follow
+
+        follow(recording, shown.save, shown.web)
+    elif shown.save is not None:
+        show.save(recording, shown.save, measured)
     elif shown.web:
-        show.serve(recording)
+        show.serve(recording, measured)
     else:
-        show.open_viewer(recording)
+        show.open_viewer(recording, measured)
+
+
+def _in_time_of(path: Path, settings: Sequence[str], run: RunData) -> Series:
+    """A measured series laid beside a run."""
+    from cosim.series.compare import files
+
+    return replace(files(path, [run], settings)[0].measured, name=path.name)
 
 
 def _draw(recording: Path, shown: Shown, at: float | None, section: float | None) -> None:

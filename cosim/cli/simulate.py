@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from cosim.cli.grouping import grouped
-from cosim.cli.options import ForceOption, JsonOption, ScenarioArgument, SetOption, talking
+from cosim.cli.options import ForceOption, JsonOption, RunArgument, ScenarioArgument, SetOption, talking
 from cosim.cli.output import print_json
 from cosim.errors import FailedError, InputError
 from cosim.outputs import whole, writable
@@ -22,16 +23,31 @@ if TYPE_CHECKING:
     from coupling.scheduler import Scheduler
 
 
+IceOption = Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")]
+
+
 @dataclass(frozen=True)
 class RunFiles:
     """What a run writes."""
 
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None
-    ice: Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")] = None
+    ice: IceOption = None
     force: ForceOption = False
+    checkpoint_every: Annotated[
+        str | None, typer.Option(metavar="TIME", help="as --set recording.checkpoint_every: for `cosim resume`")
+    ] = None
+
+    follow: Annotated[bool, typer.Option("--follow", help="show the run in rerun while it is recorded")] = False
+
+    @property
+    def overrides(self) -> list[str]:
+        """What is said of the scenario here."""
+        return [] if self.checkpoint_every is None else [f"recording.checkpoint_every={self.checkpoint_every}"]
 
     def check(self) -> None:
         """Before anything is simulated."""
+        if self.follow and self.output is None:
+            raise InputError("--follow shows what is recorded; name a recording with -o run.mcap")
         if self.output is not None:
             writable(self.output, ".mcap", force=self.force)
         if self.ice is not None:
@@ -54,11 +70,11 @@ def run(
     from cosim.recording.writer import Recorder
     from cosim.scenario.loading import load_scenario
     from cosim.show.check import fact_lines, judged
+    from cosim.show.companion import Companion
     from cosim.show.progress import ProgressBar
-    from cosim.show.tables import print_run, result_lines
     from cosim.watched import simulate
 
-    loaded = load_scenario(scenario, overrides or ())
+    loaded = load_scenario(scenario, [*(overrides or ()), *files.overrides])
     about = judged(loaded)
     for text in about["faults"]:
         raise InputError(text)
@@ -73,11 +89,47 @@ def run(
         return
     if files.output is not None:
         observers.append(Recorder(files.output, force=files.force))
-    result = simulate(loaded, observers, None if files.ice is None else partial(_keep_ice, files.ice))
-    result["recording"] = None if files.output is None else str(files.output)
+        observers += [Companion(files.output)] if files.follow else []
+    _tell(simulate(loaded, observers, _at_end(files.ice)), files.output, as_json, talk)
+
+
+@talking
+def resume(
+    recording: RunArgument,
+    ice: IceOption = None,
+    as_json: JsonOption = False,
+    *,
+    talk: Talk,
+) -> None:
+    """Go on with an interrupted run from its last checkpoint, with the bits that it would have had."""
+    from cosim.checkpoint.interrupted import interrupted
+    from cosim.observer import Observer
+    from cosim.recording.writer import Recorder
+    from cosim.show.progress import ProgressBar
+    from cosim.watched import simulate
+
+    if ice is not None:
+        writable(ice, _kind(ice))
+    run = interrupted(recording)
+    for text in run.warnings:
+        talk.warn(text)
+    talk.detail(f"goes on at {run.since.t_ns / 1e9:g} s")
+    observers: list[Observer] = [Recorder(recording, since=run.since), ProgressBar(talk)]
+    _tell(simulate(run.scenario, observers, _at_end(ice), run.kept), recording, as_json, talk)
+
+
+def _tell(result: dict[str, Any], recording: Path | None, as_json: bool, talk: Talk) -> None:
+    """What a run came to."""
+    from cosim.show.tables import print_run, result_lines
+
+    result["recording"] = None if recording is None else str(recording)
     for line in result_lines(result):
         talk.keep(line)
     print_json(result) if as_json else print_run(result, talk.level)
+
+
+def _at_end(ice: Path | None) -> Callable[[Scheduler], None] | None:
+    return None if ice is None else partial(_keep_ice, ice)
 
 
 def _kind(ice: Path) -> str:

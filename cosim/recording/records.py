@@ -59,15 +59,8 @@ class Records:
         with self.path.open("rb") as file:
             finished = _finished(file, self._size)
             crc = zlib.crc32(file.read(len(MAGIC)))
-            while True:
-                head = file.read(9)
-                length = int.from_bytes(head[1:], "little")
-                if len(head) < 9 or length > self._size - file.tell():
-                    if finished:
-                        raise DamageError(self.path, f"a record ends behind the file, before byte {file.tell()}")
-                    self.cut = True
-                    return
-                body = file.read(length)
+            while (found := self._next(file, finished)) is not None:
+                head, body = found
                 try:
                     record = _parse(head[0], body, crc)
                     yield from self._unpack(record) if isinstance(record, Chunk) else [record] if record else []
@@ -77,12 +70,24 @@ class Records:
                     text = str(error) or type(error).__name__
                     raise DamageError(self.path, f"{text}, before byte {file.tell()}") from None
                 if isinstance(record, DataEnd):
-                    break
+                    self._end(file, finished)
+                    return
                 crc = zlib.crc32(body, zlib.crc32(head, crc))
-            self._end(file.read(), finished)
 
-    def _end(self, rest: bytes, finished: bool) -> None:
+    def _next(self, file: IO[bytes], finished: bool) -> tuple[bytes, bytes] | None:
+        """Head and body of the next record; None where the file was cut off."""
+        head = file.read(9)
+        length = int.from_bytes(head[1:], "little")
+        if len(head) == 9 and length <= self._size - file.tell():
+            return head, file.read(length)
+        if finished:
+            raise DamageError(self.path, f"a record ends behind the file, before byte {file.tell()}")
+        self.cut = True
+        return None
+
+    def _end(self, file: IO[bytes], finished: bool) -> None:
         """The summary, which other programs use: under one checksum."""
+        rest = file.read()
         if not finished:
             self.cut = True
         elif zlib.crc32(rest[: -len(MAGIC) - 4]).to_bytes(4, "little") != rest[-len(MAGIC) - 4 : -len(MAGIC)]:

@@ -8,6 +8,7 @@ same scenario gives the same bits: stamps are simulated time, and nothing of the
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -21,6 +22,7 @@ from cosim.observer import RunInfo
 from cosim.outputs import drop, grow, trouble
 from cosim.recording.channels import CHANNELS, Channel, When
 from cosim.recording.metadata import COMPLETE, END, RUN, run_metadata, sealed
+from cosim.recording.retrace import Retraced, Since, retrace
 from cosim.scenario.files import read_toml
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Event, Frame
@@ -31,17 +33,24 @@ VIEWS = 60  #: in a run, of what stock viewers draw
 class Recorder:
     """Observer that writes a run to ``path``. Closing is idempotent; use it in ``finally`` or as a context manager.
 
-    An existing recording is kept unless ``force``. FailedError names the file if it cannot be written on.
+    An existing recording is kept unless ``force``; the one of an interrupted run goes on ``since`` its checkpoint.
+    FailedError names the file if it cannot be written on.
     """
 
-    def __init__(self, path: str | Path, channels: Mapping[str, Channel] = CHANNELS, force: bool = False) -> None:
-        self.path, self.force = Path(path), force
+    def __init__(
+        self,
+        path: str | Path,
+        channels: Mapping[str, Channel] = CHANNELS,
+        force: bool = False,
+        since: Since | None = None,
+    ) -> None:
+        self.path, self.force, self._since = Path(path), force, since
         self.ending = "it was stopped"  #: why the run ended, if it ends before its duration or in an error
         self.failed = False  #: it ended in an error, perhaps at its very end
         self.lights: Mapping[str, object] | None = None  #: how far the result can be trusted, of a run that has ended
         self.recorded_ns = 0  #: end of the last window in the file
         self._channels = channels
-        self._file: IO[bytes] | None = None
+        self._file: IO[bytes] | Retraced | None = None
         self._writer: Any = None  # its methods carry no types
         self._number: dict[str, int] = {}  # of each channel in the file
         self._count: dict[str, int] = {}  # of messages of each channel
@@ -52,16 +61,33 @@ class Recorder:
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
         self._due_ns, self._view_ns = self._every_ns, 0
         texts = attachments(run_info.scenario)
-        self._file = grow(self.path, ".mcap", self.force)
+        self._file = grow(self.path, ".mcap", self.force) if self._since is None else Retraced(self.path)
         self._writer = new_writer(self._file)
         self._do(self._writer.start, profile="", library="cosim")
         for name, text in texts.items():
             self._do(attach, self._writer, name, text)
         self._do(self._writer.add_metadata, RUN, sealed(run_metadata(run_info, texts)))
         self._register()
+        if self._since is not None:
+            self._do(self._go_on, self._since)
+            return
         self._write(0, {When.WORLD})
         self._write(0, {When.START})
         self._do(self._writer.flush)
+
+    def _go_on(self, since: Since) -> None:
+        """From the end of the window until which the file stays as it is."""
+        first = next(topic for topic, channel in self._channels.items() if channel.when is When.WINDOW)
+        self._count = dict(retrace(self._writer, self.path, since, first))
+        self._due_ns, self._view_ns, self.recorded_ns = since.due_ns, since.view_ns, since.t_ns
+        assert isinstance(self._file, Retraced)
+        self._file.go_on()
+
+    def settle(self) -> Since:
+        """All of the file is on the disk; from where it could go on."""
+        if self._file is not None:
+            self._do(os.fsync, self._file.fileno())
+        return Since(self.recorded_ns, self._due_ns, self._view_ns)
 
     def on_frame(self, frame: Frame) -> None:
         """Write numbers of the window, its events, and pictures if they are due."""
@@ -146,7 +172,7 @@ class Recorder:
                 self._do(self._writer.add_message, self._number[topic], t_ns, data, t_ns, self._count[topic])
 
 
-def new_writer(file: IO[bytes]) -> Any:
+def new_writer(file: Any) -> Any:
     """Of a file all of whose bytes are under checksums."""
     return mcap.writer.Writer(file, enable_data_crcs=True)
 

@@ -41,6 +41,9 @@ class Recording(Section):
 
     #: time between recorded frames; loads are recorded for every window [s]
     every: Annotated[Time, Limits("1 us", "1e6 s", "0.5 s")] = 0.5
+    #: time between checkpoints, from which an interrupted run goes on; default none. A run goes on from each of its
+    #: checkpoints itself, so its last bits depend on this, not on interruptions: `cosim resume` [s]
+    checkpoint_every: Annotated[Time, Limits("1 us", "1e6 s", "10 s")] = None
     #: peaks are those of the mean load over this time; default half a second at ice of 1 m, by Froude's law for other
     #: ice: 0.5 s (h / 1 m)^0.5 at 9.81 m/s2, see `cosim.analysis.sustained` [s]
     averaging: Annotated[Time, Limits("1 us", "1000 s", "0.5 s")] = None

@@ -20,8 +20,12 @@ from cosim.show.scale import Scale, scale_of
 TIMELINE = "simulated_time"
 
 
-def blueprint(run: RunData) -> rrb.Blueprint:
-    """On the left two cameras, the section and the plan; on the right loads, events and lights."""
+def blueprint(run: RunData, end: float | None = None) -> rrb.Blueprint:
+    """On the left two cameras, the section and the plan; on the right loads, events and lights.
+
+    Curves reach to ``end`` [s], by default that of what is recorded.
+    """
+    end = float(run.t[-1]) if end is None else end
     f = _nearness(run)
     reach = 0.5 * float(run.metadata["spacing_m"]) * max(_nodes(run))
     above = _view(
@@ -40,7 +44,7 @@ def blueprint(run: RunData) -> rrb.Blueprint:
         rrb.TimeSeriesView(
             origin=f"/load/{axis}",
             name=f"{label} on the structure [{scale.unit}], mean over {over}",
-            axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=_boundary(0.0), end=_boundary(float(run.t[-1])))),
+            axis_x=rrb.TimeAxis(view_range=rr.TimeRange(start=_boundary(0.0), end=_boundary(end))),
             plot_legend=rrb.PlotLegend(corner="LeftTop", visible=True),
         )
         for axis, label in (("fx", "Fx"), ("fz", "Fz"))

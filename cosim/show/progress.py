@@ -36,10 +36,11 @@ class ProgressBar:
             disable=talk.level == QUIET,
         )
         self._task: TaskID | None = None
-        self._logged = 0
+        self._logged, self._seen, self._from = 0, False, 0.0
 
     def on_start(self, run_info: RunInfo) -> None:
         """Show the bar."""
+        self._window = run_info.window_ns / NS
         self._duration = run_info.duration_ns / NS
         self._begin = time.monotonic()
         title = as_line(run_info.scenario.title)
@@ -52,7 +53,9 @@ class ProgressBar:
         if self._task is None:
             return
         t = frame.t_ns / NS
-        rate = t / max(time.monotonic() - self._begin, 1e-9)
+        if not self._seen:  # a run that goes on begins late
+            self._seen, self._from = True, max(t - self._window, 0.0)
+        rate = (t - self._from) / max(time.monotonic() - self._begin, 1e-9)
         self._progress.update(self._task, completed=t, now=f"{t:.5g}/{self._duration:g} s", rate=f"{rate:.2g}x")
         for line in all_event_lines(frame) if self._talk.level >= VERBOSE else event_lines(frame):
             self._talk.note(line)

@@ -29,6 +29,25 @@ def test_a_rerun_file_is_valid(run_file, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
+def test_a_measured_series_lies_over_the_curves(cosim, run_file, tmp_path):
+    """In the time of the run, in the unit of its curves; the drift has an arrow."""
+    import rerun_cli
+
+    run, series, out = read_run(run_file), tmp_path / "measured.csv", tmp_path / "run.rrd"
+    lines = (f"{t:.4f},{f:.1f}\n" for t, f in zip(run.t, run.component("fx"), strict=True))
+    series.write_text("time [s],Fx [N]\n" + "".join(lines), encoding="utf-8")
+    code, _, err = cosim("replay", run_file, "--measured", series, "--save", out)
+    assert code == 0, err
+    binary = Path(rerun_cli.__file__).with_name("rerun")
+    told = subprocess.run([binary, "rrd", "print", "-v", out], capture_output=True, text=True, timeout=60).stdout
+    assert "load/fx/measured" in told
+    assert "load/fz/measured" not in told
+    assert "world/drift" in told
+    code, _, err = cosim("replay", run_file, "--measured", series, "--video", tmp_path / "x.mp4")
+    assert code == 2
+    assert "--measured lies over curves of a viewer" in err
+
+
 def test_a_recording_opens_in_rerun_without_us(run_file):
     """Nested messages all set, schemas known: the stock decoders find nothing to complain about."""
     import rerun_cli

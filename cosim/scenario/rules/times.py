@@ -55,8 +55,10 @@ def duration_is_whole(m: Any) -> Faults:
 
 
 def frames_are_whole(m: Any) -> Faults:
-    """Windows between recorded frames."""
+    """Windows between recorded frames, and between checkpoints."""
     yield from _whole("recording.every", m.recording.every, "time window", m.coupling.window)
+    if m.recording.checkpoint_every is not None:
+        yield from _whole("recording.checkpoint_every", m.recording.checkpoint_every, "time window", m.coupling.window)
 
 
 def _whole(key: str, value: float, name: str, step: float) -> Faults:

@@ -29,6 +29,12 @@ class Scene:
     thickness: float  #: of the ice [m]
     width: float  #: of the floe [m]
 
+    @property
+    def reach(self) -> float:
+        """How far the structure reaches against the drift [m]; a slope that does not end: nothing."""
+        half = self.structure.half_width
+        return half if np.isfinite(half) else 0.0
+
     def section_at(self, y: float) -> int:
         """Number of the section that holds y."""
         return round((y - self.origin) / self.pitch)
