@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from cosim.build_rubble import build_rubble, filling_rate
+from cosim.build_motion import build_motion
+from cosim.build_rubble import build_rubble, filling_rate, moves
 from cosim.errors import InputError
 from cosim.ice.broken import broken
 from cosim.ice.fields import varied
@@ -20,9 +21,11 @@ from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, BoolArray, RubbleParticipant, Structure
+from coupling.interface import Path as Way
 from coupling.ledger import Ledger
+from coupling.moving import WithStructure
 from coupling.rubble_port import NoRubble, RubblePort
-from coupling.scheduler import Scheduler
+from coupling.scheduler import Scheduler, Scheme
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble
@@ -51,7 +54,9 @@ def build(scenario: Scenario) -> Scheduler:
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
     contact = CONTACTS[scenario.contact.model]
-    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
+    motion = build_motion(scenario)
+    way = None if motion is None else Way()
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario), way)
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     if scenario.coupling.scheme == "lockstep" and isinstance(rubble, RubblePort):
         port.lockstep(scenario.rubble.substep)
@@ -65,12 +70,15 @@ def build(scenario: Scenario) -> Scheduler:
             ledger.initial_mass += rubble.mass
     c = scenario.coupling
     iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
+    scheme: Scheme = SCHEMES[c.scheme](iteration)
+    if motion is not None and way is not None:
+        scheme = WithStructure(scheme, motion, way, scenario.structure.motion.repeats)
     return Scheduler(
         port,
         rubble,
         ledger,
         scenario.window_ns,
-        SCHEMES[c.scheme](iteration),
+        scheme,
         build_steering(scenario),
         scenario.duration_ns,
     )
@@ -163,7 +171,7 @@ def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
             raise InputError(f"{scenario.name}: {error}") from error
     if dynamic:
         return ExplicitSheet(ExplicitEngine(grid, ice, springs, window, **options), criteria=criteria)
-    windows = max(1, round(scenario.fracture.longest_step / window))
+    windows = 0 if moves(scenario) else max(1, round(scenario.fracture.longest_step / window))
     return Sheet(Engine(grid, ice, springs, **options), window, criteria=criteria, long_step=windows)
 
 

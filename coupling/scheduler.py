@@ -45,6 +45,7 @@ class Scheduler:
         self.t_ns, self.fragments, self.power = 0, 0, PowerBooks()
         self.jump = True  #: no window has gone before, or blocks were born in it: nothing to predict from
         self.notes: dict[str, float] = {}  #: what a scheme has to say about the window
+        self.motion: Array | None = None  #: (2, 6) of a structure that moves, see `Frame.motion`
         ledger.energy.open(sheet.energy, rubble.energy)
 
     def macro_step(self) -> Frame:
@@ -76,10 +77,11 @@ class Scheduler:
             self.sheet.view(),
             self.rubble.blocks(),
             load,
-            (*report.events, *self.rubble.events(self.t_ns, load.sum(axis=0))),
-            books,
-            budget,
-            report.contact,
+            events=(*report.events, *self.rubble.events(self.t_ns, load.sum(axis=0))),
+            ledger=books,
+            budget=budget,
+            contact=report.contact,
+            motion=self.motion,
         )
 
     def _window(self) -> int:

@@ -14,6 +14,7 @@ from rubble.edges import Edges
 from rubble.friction import coefficient
 from rubble.gather import Scene
 from rubble.joints import Joints
+from rubble.moving import resting
 from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
@@ -56,7 +57,7 @@ class Runner:
         self._pressure: dict[int, Array] = {}
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
-        self.breaking = Breaking(physics)
+        self.breaking, self.moving = Breaking(physics), resting()
         self.broken = 0.0  #: energy that plates have lost by breaking again [J]
         self.edges: Edges
         self._run: Run
@@ -79,7 +80,7 @@ class Runner:
             self._rename(renamed)
         tables, plates = store.tables, store.plates
         tables.sums[:] = 0.0
-        self.water_impulse[:] = 0
+        self.water_impulse[:] = self.moving.wrench[:] = 0
         self.edges = edges_of(sections, self.yields)
         scene = self._scene(store, sections, self.edges)
         window = Window(
@@ -156,6 +157,7 @@ class Runner:
             strength=strength,
             shortest=shortest,
             cut=int(self._counted[1]) + 1,
+            moving=self.moving,
         )
 
     def _sides(self, scene: Scene, store: Store) -> Sides:
@@ -214,8 +216,8 @@ class Runner:
         if not finite.all():
             number = store.list[int(np.argmin(finite))].id
             raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
-        tables, planes = store.tables, list(sections.by_key.values())
-        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.physics.align_tolerance)
+        tables, planes, align = store.tables, list(sections.by_key.values()), self.physics.align_tolerance
+        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.moving, align)
 
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""

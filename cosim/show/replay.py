@@ -31,7 +31,8 @@ from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
 from cosim.show.pictures import still_meshes
 from cosim.show.viewer import screen_viewer, web_viewer
-from coupling.interface import NS, PHASES, Phase
+from coupling.interface import FREEDOMS, NS, PHASES, Phase
+from coupling.structure.moved import turned
 
 APPLICATION = "cosim"
 TOTAL_RGB = (235, 235, 235)
@@ -92,7 +93,16 @@ def send(sink: rr.RecordingStream, recording: Path, run: RunData) -> None:
         for strips in moving_strips(scene, picture, section):
             sink.log(strips.name, _strips(strips))
         sink.log("world/load", _arrow(picture, scene))
+        if run.motion:
+            sink.log("world/structure", _placed(run, picture.t_ns))
     sink.flush()
+
+
+def _placed(run: RunData, t_ns: int) -> rr.Transform3D:
+    """Where a structure that moves is."""
+    k = min(int(np.searchsorted(run.t_ns, t_ns)), len(run.t_ns) - 1)
+    place = np.array([run.motion[name][k] for name in FREEDOMS])
+    return rr.Transform3D(translation=place[:3], mat3x3=turned(place[3:]))
 
 
 def shown_section(run: RunData, recording: Path) -> int:
