@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from cosim.build_motion import build_motion
-from cosim.build_rubble import build_rubble, filling_rate, moves
+from cosim.build_motion import build_motion, repeats_of
+from cosim.build_rubble import build_rubble, filling_rate
 from cosim.errors import InputError
 from cosim.ice.broken import broken
 from cosim.ice.fields import varied
@@ -20,7 +20,7 @@ from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import NS, BoolArray, RubbleParticipant, Structure
+from coupling.interface import NS, BoolArray, Motion, RubbleParticipant, Structure
 from coupling.interface import Path as Way
 from coupling.ledger import Ledger
 from coupling.moving import WithStructure
@@ -44,8 +44,11 @@ from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS
 
 
-def build(scenario: Scenario) -> Scheduler:
-    """All participants of a run, at rest, with the floe touching the structure."""
+def build(scenario: Scenario, motion: Motion | None = None) -> Scheduler:
+    """All participants of a run, at rest, with the floe touching the structure.
+
+    ``motion`` is that of the structure, if it is not to be the one of the scenario.
+    """
     structure = build_structure(scenario)
     ice = build_ice(scenario)
     sheet = build_sheet(scenario, ice, structure)
@@ -54,7 +57,7 @@ def build(scenario: Scenario) -> Scheduler:
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
     contact = CONTACTS[scenario.contact.model]
-    motion = build_motion(scenario)
+    motion = build_motion(scenario) if motion is None else motion
     way = None if motion is None else Way()
     port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario), way)
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
@@ -68,11 +71,9 @@ def build(scenario: Scenario) -> Scheduler:
             r = scenario.rubble
             lay_rubble(port, rubble, r.initial_volume, r.initial_porosity, scenario.scenario.seed)
             ledger.initial_mass += rubble.mass
-    c = scenario.coupling
-    iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
-    scheme: Scheme = SCHEMES[c.scheme](iteration)
+    scheme = build_scheme(scenario)
     if motion is not None and way is not None:
-        scheme = WithStructure(scheme, motion, way, scenario.structure.motion.repeats)
+        scheme = WithStructure(scheme, motion, way, repeats_of(scenario))
     return Scheduler(
         port,
         rubble,
@@ -82,6 +83,13 @@ def build(scenario: Scenario) -> Scheduler:
         build_steering(scenario),
         scenario.duration_ns,
     )
+
+
+def build_scheme(scenario: Scenario) -> Scheme:
+    """How sheet and rubble go through a window."""
+    c = scenario.coupling
+    iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
+    return SCHEMES[c.scheme](iteration)
 
 
 def build_steering(scenario: Scenario) -> Steering:
@@ -171,7 +179,7 @@ def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
             raise InputError(f"{scenario.name}: {error}") from error
     if dynamic:
         return ExplicitSheet(ExplicitEngine(grid, ice, springs, window, **options), criteria=criteria)
-    windows = 0 if moves(scenario) else max(1, round(scenario.fracture.longest_step / window))
+    windows = max(1, round(scenario.fracture.longest_step / window))
     return Sheet(Engine(grid, ice, springs, **options), window, criteria=criteria, long_step=windows)
 
 

@@ -29,11 +29,19 @@ def build_motion(scenario: Scenario) -> Motion | None:
             return _of_matrices(path) if m.file else _of_tables(m)
         if m.kind == "modal":
             return _of_modes(path)
+        if m.kind == "fmu":
+            return _of_fmu(path, m.repeats)
         if m.file:
             return _of_series(path, scenario.duration_ns / 1e9)
         return Prescribed.steady(np.array([*m.velocity, 0.0, 0.0, 0.0]), scenario.duration_ns / 1e9)
     except ValueError as error:
         raise InputError(f"{f'{path}: ' if m.file else 'structure.motion: '}{error}") from error
+
+
+def repeats_of(scenario: Scenario) -> int:
+    """How often at most a window is repeated for the motion."""
+    m = scenario.structure.motion
+    return 0 if m is None else int(m.repeats)
 
 
 def _of_tables(m: Any) -> LinearMotion:
@@ -84,6 +92,13 @@ def _of_series(path: Path, duration: float) -> Prescribed:
     if len(time) and time[-1] < duration:
         raise InputError(f"{path}: ends at {time[-1]:g} s, the run at {duration:g} s; lengthen it")
     return Prescribed(time, np.column_stack([_column(path, table, name, len(time)) for name in SERIES]))
+
+
+def _of_fmu(path: Path, repeats: int) -> Motion:
+    """A model of others."""
+    from cosim.fmi.structure import FmuMotion
+
+    return FmuMotion(path, repeats=repeats)
 
 
 def _column(path: Path, table: Any, name: str, count: int) -> Array:

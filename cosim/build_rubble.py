@@ -56,11 +56,6 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
     )
 
 
-def moves(scenario: Scenario) -> bool:
-    """Whether the structure does."""
-    return scenario.structure.motion is not None and bool(scenario.structure.motion.moves)
-
-
 def sections_of(scenario: Scenario) -> tuple[float, float]:
     """Y of section 0 and width of the sections of whole node columns [m]."""
     d = scenario.sheet.spacing

@@ -17,7 +17,7 @@ from copy import deepcopy
 
 import numpy as np
 
-from coupling.interface import NS, Array, Motion, Path, SheetReport, SimulationError
+from coupling.interface import NS, Array, Motion, Path, Restore, SheetReport, SimulationError
 from coupling.scheduler import Scheduler, Scheme
 
 CLOSED = 1e-12  #: part of the way of a window by which it may be missed for no repeat to follow
@@ -83,6 +83,19 @@ class WithStructure:
             books["structure_energy_residual"] = self._received + own.get("structure_drive_work", 0.0) - spent
         s.notes = {**s.notes, **books}
         s.motion = np.array([self.motion.displacement, self.motion.velocity])
+
+    def save(self) -> Restore:
+        """The structure between two windows, and what this scheme and the one inside remember."""
+        motion, own = self.motion.save(), (self._load, self._lost, self._exchanged, self._received)
+        inner = deepcopy(getattr(self._scheme, "__dict__", {}))
+
+        def back() -> None:
+            motion()
+            self._load, self._lost, self._exchanged, self._received = own
+            if inner:
+                vars(self._scheme).update(deepcopy(inner))
+
+        return back
 
     def _save(self, s: Scheduler) -> Callable[[], None]:
         """Participants and scheme at the start of the window; the structure itself has not moved yet."""

@@ -25,6 +25,8 @@ from coupling.ledger import Ledger
 from coupling.power import PowerBooks
 from coupling.steering import Steering, fixed
 
+CLOCK = ("t_ns", "window_ns", "_next", "power", "jump", "notes", "motion")  #: what changes from window to window
+
 
 class Scheduler:
     """Runs the participants window by window; time is an integer number of nanoseconds."""
@@ -115,6 +117,18 @@ class Scheduler:
             sheet()
             rubble()
             vars(self.ledger).update(deepcopy(balances))
+
+        return restore
+
+    def checkpoint(self) -> Restore:
+        """The whole run between two windows, with its clock; for a scheme that has ``save``."""
+        back, clock = self.save(), {name: deepcopy(getattr(self, name)) for name in CLOCK}
+        scheme: Restore = self._scheme.save()  # type: ignore[attr-defined]
+
+        def restore() -> None:
+            back()
+            scheme()
+            vars(self).update(deepcopy(clock))
 
         return restore
 

@@ -12,9 +12,9 @@ from rubble.arrays import Array, IntArray, Record, Records
 from rubble.compiled import compiled
 from rubble.cut import nearest
 from rubble.edges import Edges, deeper_on_sheet
-from rubble.moving import Moving, aside, from_axes, move_structure, own_axes, turned
+from rubble.moving import Moving, aside, from_axes, turned
 from rubble.plates import Plates, times
-from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
+from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, short
 from rubble.rows import ICE, SHEET, STRUCTURE, Rows, go_on, set_arms, set_way
 from rubble.slices import Pieces, Slices, strayed
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
@@ -54,32 +54,6 @@ class Scene(NamedTuple):
     shortest: float  #: least length of a contact [m]
     cut: int  #: number of the sub-step in which the slices are new
     moving: Moving  #: the structure
-
-
-@compiled(nogil=True)
-def find_pairs(scene: Scene) -> None:
-    """Put the bodies where plates and edges are, and let pymunk find contacts, section by section."""
-    plates, slices, sections, edges = scene.plates, scene.slices, scene.sections, scene.edges
-    layout, moving = sections.body, scene.moving
-    move_structure(moving, scene.dt)
-    for s in range(slices.body.shape[0]):
-        k = slices.plate[s]
-        r, b, p, body = plates.rotation[k], slices.anchor[s], plates.position[k], slices.body[s]
-        x, _, z = times(r, b[0], b[1], b[2])
-        x, z = own_axes(moving, sections.y[slices.section[s]], p[0] + x, p[2] + z)
-        set_real(body + layout.x, x)
-        set_real(body + layout.z, z)
-        set_real(body + layout.angle, np.arctan2(r[2, 0], r[0, 0]) + moving.place[4])
-    for e in range(edges.body.shape[0]):
-        if edges.body[e] != 0:
-            foremost = edges.nodes[edges.offset[e]]
-            x, z = own_axes(moving, sections.y[e], foremost.x, foremost.z)
-            set_real(edges.body[e] + layout.x, x)
-            set_real(edges.body[e] + layout.z, z)
-            set_real(edges.body[e] + layout.angle, moving.place[4])
-    for i in range(sections.space.shape[0]):
-        carray(pointer(sections.pairs[i]), 1, LIST)[0].count = 0
-        step_space(sections.step, sections.space[i], scene.dt)
 
 
 @compiled(nogil=True)

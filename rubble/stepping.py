@@ -12,8 +12,9 @@ from rubble.bending import Loaded, sum_bending
 from rubble.books import book_contacts, book_step, book_structure, kick, outside, sum_contacts
 from rubble.compiled import compiled
 from rubble.edges import Edges, push_edge
-from rubble.gather import Scene, find_pairs, gather
+from rubble.gather import Scene, gather
 from rubble.joints import Joints, joint_rows
+from rubble.pairs import find_pairs
 from rubble.plates import Plates, move_all
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows

@@ -76,6 +76,8 @@ class SheetPort:
         self.meeting: Meeting | None = None  #: in lockstep
         self._leaving = Leaving()
         self.moving = None if path is None else OnMoving(self.contact, path)
+        if path is not None:
+            sheet.window_by_window()
         rests = partial(friction_part, structure, law.friction, self.contact.face, self.contact.touching_z)
         sheet.energy.friction_of = rests if path is None else self.contact.friction_in
 

@@ -20,7 +20,13 @@ def motion_has_its_keys(m: Any) -> Faults:
         return
     tables = [name for name in FREEDOMS if getattr(motion, name) is not None]
     given = {"velocity": motion.velocity is not None, "file": bool(motion.file), "tables": bool(tables)}
-    wants = {"rigid": (), "spring": ("tables", "file"), "modal": ("file",), "prescribed": ("velocity", "file")}
+    wants = {
+        "rigid": (),
+        "spring": ("tables", "file"),
+        "modal": ("file",),
+        "fmu": ("file",),
+        "prescribed": ("velocity", "file"),
+    }
     named = {
         "velocity": 'velocity = ["-0.1 m/s", "0 m/s", "0 m/s"]',
         "file": 'file = "motion.csv"',
