@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from cosim.build_motion import build_motion, repeats_of
 from cosim.build_rubble import build_rubble, filling_rate
 from cosim.errors import InputError
 from cosim.ice.broken import broken
@@ -19,11 +20,13 @@ from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
-from coupling.interface import NS, BoolArray, RubbleParticipant, Structure
+from coupling.interface import NS, BoolArray, Motion, RubbleParticipant, Structure
+from coupling.interface import Path as Way
 from coupling.ledger import Ledger
+from coupling.moving import WithStructure
 from coupling.rubble_port import NoRubble, RubblePort
 from coupling.rubble_port.initial import Initial
-from coupling.scheduler import Scheduler
+from coupling.scheduler import Scheduler, Scheme
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
 from coupling.start import lay_rubble
@@ -42,8 +45,11 @@ from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS
 
 
-def build(scenario: Scenario) -> Scheduler:
-    """All participants of a run, at rest, with the floe touching the structure."""
+def build(scenario: Scenario, motion: Motion | None = None) -> Scheduler:
+    """All participants of a run, at rest, with the floe touching the structure.
+
+    ``motion`` is that of the structure, if it is not to be the one of the scenario.
+    """
     structure = build_structure(scenario)
     ice = build_ice(scenario)
     sheet = build_sheet(scenario, ice, structure)
@@ -52,7 +58,9 @@ def build(scenario: Scenario) -> Scheduler:
     law = ContactLaw(scenario.contact.strength, scenario.contact.friction, ice.E / sheet.grid.d)
     columns = scenario.rubble.columns_per_section
     contact = CONTACTS[scenario.contact.model]
-    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario))
+    motion = build_motion(scenario) if motion is None else motion
+    way = None if motion is None else Way()
+    port = SheetPort(sheet, structure, law, scenario.drift.velocity, columns, contact, loads_of(scenario), way)
     rubble: RubbleParticipant = build_rubble(scenario, structure, sheet.grid) if scenario.rubble.enabled else NoRubble()
     if scenario.coupling.scheme == "lockstep" and isinstance(rubble, RubblePort):
         port.lockstep(scenario.rubble.substep)
@@ -65,17 +73,25 @@ def build(scenario: Scenario) -> Scheduler:
             lengths = (float(r.initial_lengths[0]), float(r.initial_lengths[1]))
             lay_rubble(port, rubble, Initial(r.initial_volume, r.initial_porosity, lengths, scenario.scenario.seed))
             ledger.initial_mass += rubble.mass
-    c = scenario.coupling
-    iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
+    scheme = build_scheme(scenario)
+    if motion is not None and way is not None:
+        scheme = WithStructure(scheme, motion, way, repeats_of(scenario))
     return Scheduler(
         port,
         rubble,
         ledger,
         scenario.window_ns,
-        SCHEMES[c.scheme](iteration),
+        scheme,
         build_steering(scenario),
         scenario.duration_ns,
     )
+
+
+def build_scheme(scenario: Scenario) -> Scheme:
+    """How sheet and rubble go through a window."""
+    c = scenario.coupling
+    iteration = Iteration(c.tolerance, c.max_iterations, c.relaxation, c.force_floor, c.unconverged == "stop")
+    return SCHEMES[c.scheme](iteration)
 
 
 def build_steering(scenario: Scenario) -> Steering:

@@ -45,6 +45,7 @@ MAGIC = {
     ".dat": b"# Brash",
     ".mp4": b"\0\0\0",
     ".log": b"# cosim log",
+    ".fmu": b"PK\x03\x04",
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists
 GROWS = {

@@ -14,7 +14,8 @@ from threadpoolctl import threadpool_limits
 
 from cosim.analysis.lights import trust
 from cosim.analysis.moments import moments
-from cosim.analysis.run_data import COMPONENTS, RunData, event_json
+from cosim.analysis.motion import motion
+from cosim.analysis.run_data import COMPONENTS, MOTION, RunData, event_json
 from cosim.analysis.volumes import volumes
 from cosim.build import build, run_info
 from cosim.checkpoint.keeping import Checkpoints
@@ -60,6 +61,7 @@ class RunResult:
     staggering: list[tuple[float, float]] = field(default_factory=list)  #: Fx and Fz of every window [N]
     rubble: list[tuple[float, float]] = field(default_factory=list)  #: stored and cleared after every window [kg]
     grips: list[Grip] = field(default_factory=list)  #: moments and point of attack of every window
+    motion: list[Array] = field(default_factory=list)  #: (2, 6) of the structure after every window, if it moves
 
     def kept(self) -> dict[str, Any]:
         """What a checkpoint keeps of it; see `go_on`."""
@@ -71,6 +73,7 @@ class RunResult:
             "weight": np.array([g.weight for g in self.grips]),
             "staggering": np.array(self.staggering),
             "rubble": np.array(self.rubble),
+            "motion": np.array(self.motion).reshape(-1, 2, 6),
             "events": self.events,
         }
 
@@ -81,6 +84,7 @@ class RunResult:
         self.grips = [Grip(m, w) for m, w in zip(kept["moment"], kept["weight"], strict=True)]
         self.staggering = [(x, z) for x, z in kept["staggering"].tolist()]
         self.rubble = [(stored, cleared) for stored, cleared in kept["rubble"].tolist()]
+        self.motion = list(kept["motion"])
         self.t_ns = self.loads[-1][0]
 
     def see(self, frame: Frame, grip: Grip) -> None:
@@ -91,6 +95,8 @@ class RunResult:
         self.staggering.append((frame.budget.get("fx_staggering", 0.0), frame.budget.get("fz_staggering", 0.0)))
         self.rubble.append((frame.ledger.get("rubble_mass", 0.0), frame.ledger.get("cleared_mass", 0.0)))
         self.events.extend(frame.events)
+        if frame.motion is not None:
+            self.motion.append(frame.motion)
 
     @cached_property
     def data(self) -> RunData:
@@ -113,6 +119,7 @@ class RunResult:
             budget={"fx_staggering": staggering[:, 0], "fz_staggering": staggering[:, 1]},
             moment=np.array([g.moment for g in self.grips]).reshape(-1, 3, 3),
             weight=np.array([g.weight for g in self.grips]).reshape(-1, 4),
+            motion=dict(zip(MOTION, np.array(self.motion).reshape(-1, 12).T, strict=True)) if self.motion else {},
         )
 
     @property
@@ -152,6 +159,7 @@ class RunResult:
             "peaks": self.peaks.to_json(),
             "peaks_by_phase": {phase: peaks.to_json() for phase, peaks in self.by_phase.items()},
             "moments": moments(self.data),
+            "motion": motion(self.data),
             "trust": trust(self.data),
             "events": [event_json(e) for e in self.data.lasting.events],
             "fragments": self.fragments,
@@ -217,7 +225,7 @@ def _finish(result: RunResult, scheduler: Scheduler) -> None:
         "cleared_mass": scheduler.rubble.cleared_mass,
         "interface_lost": scheduler.power.loss,
         "interface_exchanged": scheduler.power.exchanged,
-        **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows")},
+        **{k: v for k, v in scheduler.notes.items() if k.endswith("_windows") or k.startswith("structure_")},
     }
 
 

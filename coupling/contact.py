@@ -13,6 +13,9 @@ The thesis's force acts on the node, at middle thickness, and the overlap counts
 its rotation. This reading reproduces the thesis: the 55 m floe splits at 3.18 MN and 19.8 s (thesis 3.2 MN). With the
 rotation and with the moment of a force that acts at the upper edge it splits at 3.48 MN and 20.9 s.
 
+Against a structure that moves the overlap is that in its frame, and friction acts against the motion of the ice
+relative to it: of the drift and of the structure, as the deflection of the edge is left out against one that rests.
+
 `CrushingContact` acts where it bears: at the middle of the face of contact, and the overlap counts the way of that
 point, rotation included.
 """
@@ -23,11 +26,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.interface import Array, IntArray, Structure
+from coupling.contact_friction import friction_at
+from coupling.interface import Array, IntArray, Path, Structure
+from coupling.structure import moved
 
 #: points across the width of a node: on a cone of 15 m the mean overlap of nodes 1 m apart is within 1 % of the exact
 #: one from L = 0.1 m on
 SAMPLES = 8
+#: friction turns round over this part of the speed along the slope: there is no sliding where it turns [-]
+TURNS = 0.05
 
 
 @dataclass(frozen=True)
@@ -45,9 +52,21 @@ class OverlapContact:
     Displacements are relative to the drifting frame.
     """
 
-    def __init__(self, structure: Structure, law: ContactLaw, velocity: float, thickness: float, freeboard: float):
-        """``velocity`` of the drift [m/s], ``thickness`` and ``freeboard`` of the floating sheet [m]."""
-        self._s, self._law, self._v, self._h = structure, law, velocity, thickness
+    def __init__(
+        self,
+        structure: Structure,
+        law: ContactLaw,
+        velocity: float,
+        thickness: float,
+        freeboard: float,
+        path: Path | None = None,
+    ):
+        """``velocity`` of the drift [m/s], ``thickness`` and ``freeboard`` of the floating sheet [m].
+
+        ``path`` is that of a structure that moves.
+        """
+        self._s, self._law, self._v, self._h, self.path = structure, law, velocity, thickness, path
+        self._t = 0.0  #: at which the contact was looked at last [s]
         #: +1 if the upper edge of the ice touches (downward-breaking structure), -1 if the lower one does
         self.face = 1.0 if structure.faces_down else -1.0
         self.touching_z = freeboard - 0.5 * thickness + self.face * 0.5 * thickness  #: of that edge afloat [m]
@@ -70,7 +89,10 @@ class OverlapContact:
         z = self.touching_z + y[:, 2]
         x = self._x + self._v * t + y[:, 0]
         across = self._sample_y + y[:, 1:2]
-        return self._s.overlap(x, across, z)
+        if self.path is None:
+            return self._s.overlap(x, across, z)
+        self._t = t
+        return moved.overlap(self._s, self.path.at(t), x, across, z)
 
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] at displacements y (m, 3): an `EdgeContact`."""
@@ -83,7 +105,7 @@ class OverlapContact:
         L, normal = L[on], normal[on]
         sin, cos, growing, length = self._length(L, normal)
         pressure, stiffness = self.pressure(L, on)
-        per_area = (self._width[on, None] / SAMPLES)[..., None] * self._direction(normal, sin)
+        per_area = (self._width[on, None] / SAMPLES)[..., None] * self._direction(normal, sin, on)
         force[on] = (per_area * (pressure * length)[..., None]).sum(axis=1)
         slope = per_area * (stiffness * length + np.where(growing, pressure / np.maximum(cos, 1e-12), 0.0))[..., None]
         for k in range(3):  # dL/dy and dL/dw are -dx/dy and -dx/dz of the face
@@ -105,11 +127,40 @@ class OverlapContact:
         """Called at the end of a window: depth to which the touching edge is crushed, (m, SAMPLES) [m]."""
         return self.overlap(t, y)[0]
 
-    def _direction(self, normal: Array, sin: Array) -> Array:
-        """Normal plus friction, (m, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
+    def _direction(self, normal: Array, sin: Array, rows: IntArray) -> Array:
+        """Normal plus friction, (k, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
         up = np.array([0.0, 0.0, 1.0])
         up_slope = (up - normal[..., 2:] * normal) / sin[..., None]
-        return normal + self._law.friction * self.face * up_slope
+        if self.path is None:
+            return normal + self._law.friction * self.face * up_slope
+        slides = self._slides(up_slope, rows)
+        return normal + self._law.friction * self.face * slides[..., None] * up_slope
+
+    def _slides(self, up_slope: Array, rows: IntArray) -> Array:
+        """1 where ice slides over a structure that moves as it is pushed, -1 where the other way; (k, SAMPLES).
+
+        By the drift it slides with u, by the motion of the structure with w more.
+        """
+        assert self.path is not None
+        at = np.column_stack((self._x[rows] + self._v * self._t, self._sample_y[rows].mean(axis=1)))
+        arm = np.column_stack((at, np.full(len(rows), self.touching_z))) - self.path.at(self._t)[:3]
+        pushed = -self.face * up_slope
+        u = self._v * pushed[..., 0]
+        w = -(pushed * moved.speed(self.path.velocity, arm)[:, None, :]).sum(axis=-1)
+        both = np.abs(u) + np.abs(w)
+        return np.asarray(np.clip(np.divide(u + w, TURNS * both, out=np.ones_like(u), where=both > 0.0), -1.0, 1.0))
+
+    def friction_in(self, y: Array, force: Array) -> Array:
+        """Friction in forces (m, >= 3) on the nodes at displacements y (m, 3), of a structure that moves."""
+        assert self.path is not None
+        height = self.touching_z + y[:, 2] - self.path.at(self._t)[2]
+        rows = np.flatnonzero(force[: len(self.nodes)].any(axis=1))
+        mu = np.full(len(force), self._law.friction)
+        _, normal = self.overlap(self._t, y[: len(self.nodes)])
+        sin = np.sqrt(1.0 - normal[rows, :, 2] ** 2)
+        up_slope = (np.array([0.0, 0.0, 1.0]) - normal[rows, :, 2:] * normal[rows]) / sin[..., None]
+        mu[rows] *= self._slides(up_slope, rows).mean(axis=1)
+        return friction_at(self._s, mu, self.face, height, force)
 
 
 class CrushingContact(OverlapContact):

@@ -14,11 +14,17 @@ from coupling.interface import Array, Structure
 
 def friction_part(structure: Structure, mu: float, face: float, level: float, y: Array, force: Array) -> Array:
     """Friction in the force (m, >= 3) on nodes displaced by y (m, 3); the touching face rests at ``level`` [m]."""
+    return friction_at(structure, mu, face, level + y[:, 2], force)
+
+
+def friction_at(structure: Structure, mu: Array | float, face: float, height: Array, force: Array) -> Array:
+    """The same with the heights (m,) of the touching face [m], and a coefficient that may be that of each node (m,)."""
     part = np.zeros_like(force)
     on = np.flatnonzero(force.any(axis=1))
-    if not len(on) or mu == 0.0:
+    if not len(on) or not np.any(mu):
         return part
-    n_z = structure.normal_z(level + y[on, 2])
+    n_z = structure.normal_z(height[on])
+    mu = mu[on] if isinstance(mu, np.ndarray) else mu
     s = np.sqrt(1.0 - n_z**2)
     normal = force[on, :3] / (1.0 - mu * face * n_z / s)[:, None]
     normal[:, 2] = n_z * force[on, 2] / (n_z + mu * face * s)

@@ -10,6 +10,8 @@ The sheet's terms come from `lattice.energy`, those of the blocks from `rubble.e
 * interface: work that blocks do on the edge they meet less work that the lattice receives on its nodes. It holds the
   lag of one window and what the edge's spring and mass take up: no store of its own, because the lattice stores the
   same deformation.
+* structure: what one that moves puts into the ice that it presses, F . v of all its contacts, on the way that the ice
+  saw (`coupling.moving`). Losses of a contact are those of the ice against it.
 * In lockstep there is no lag: what blocks lose in impacts on the sheet is what they give less what the lattice receives
   on its nodes, friction apart. An impact that gives more than it takes would be below zero.
 
@@ -26,6 +28,7 @@ from coupling.interface import NS, SimulationError
 
 STORES = ("sheet_elastic", "sheet_foundation", "sheet_kinetic", "rubble_kinetic", "rubble_potential")
 SOURCES = ("drift_work", "thrust_work")
+MOVING = "structure_work"  #: what a structure that moves puts in; no term where it rests
 LOAD_WORK = "_load_work"  #: ends the name of what a load on the sheet puts in, where there are loads
 LIMIT = 0.01  #: of the drift's work, or of `EnergyBalance.floor` while that is larger
 
@@ -35,6 +38,8 @@ def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[st
     both = {**sheet, **rubble}
     terms = {name: both.get(name, 0.0) for name in SOURCES + STORES}
     terms |= {name: value for name, value in both.items() if name.endswith(("_loss", LOAD_WORK))}
+    if (work := both.get(f"sheet_{MOVING}")) is not None:
+        terms[MOVING] = work + both.get(f"rubble_{MOVING}", 0.0)
     terms["handover_elastic_loss"] = sheet["left_elastic"]
     terms["handover_potential_loss"] = sheet["left_foundation"] - rubble.get("born_potential", 0.0)
     terms["handover_kinetic_loss"] = sheet["left_kinetic"] - rubble.get("born_kinetic", 0.0)
@@ -49,7 +54,8 @@ def terms_of(sheet: Mapping[str, float], rubble: Mapping[str, float]) -> dict[st
 def residual_of(terms: Mapping[str, float]) -> float:
     """What no term explains [J]."""
     spent = sum(value for name, value in terms.items() if name in STORES or name.endswith("_loss"))
-    return sum(value for name, value in terms.items() if name in SOURCES or name.endswith(LOAD_WORK)) - spent
+    sources = (*SOURCES, MOVING)
+    return sum(value for name, value in terms.items() if name in sources or name.endswith(LOAD_WORK)) - spent
 
 
 @dataclass
@@ -60,7 +66,7 @@ class EnergyBalance:
     #: and to a floe that nothing holds it does nothing at all
     floor: float = 1.0
     terms: dict[str, float] = field(default_factory=dict)  #: since the start, at the end of the last window [J]
-    work: float = 0.0  #: largest of the drift so far [J]
+    work: float = 0.0  #: largest of the drift, or of the structure, so far [J]
     _start: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -86,7 +92,7 @@ class EnergyBalance:
             return {}
         before, now = self.terms, terms_of(sheet, rubble)
         self.terms = {name: value - self._start.get(name, 0.0) for name, value in now.items()}
-        self.work = max(self.work, abs(self.terms["drift_work"]))
+        self.work = max(self.work, abs(self.terms["drift_work"]), abs(self.terms.get(MOVING, 0.0)))
         if not self.relative <= LIMIT:
             change = {name: value - before.get(name, 0.0) for name, value in self.terms.items()}
             worst = max(change, key=lambda name: abs(change[name]))

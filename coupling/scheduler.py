@@ -25,6 +25,8 @@ from coupling.ledger import Ledger
 from coupling.power import PowerBooks
 from coupling.steering import Steering, fixed
 
+CLOCK = ("t_ns", "window_ns", "_next", "power", "jump", "notes", "motion")  #: what changes from window to window
+
 
 class Scheduler:
     """Runs the participants window by window; time is an integer number of nanoseconds."""
@@ -45,6 +47,7 @@ class Scheduler:
         self.t_ns, self.fragments, self.power = 0, 0, PowerBooks()
         self.jump = True  #: no window has gone before, or blocks were born in it: nothing to predict from
         self.notes: dict[str, float] = {}  #: what a scheme has to say about the window
+        self.motion: Array | None = None  #: (2, 6) of a structure that moves, see `Frame.motion`
         ledger.energy.open(sheet.energy, rubble.energy)
 
     def macro_step(self) -> Frame:
@@ -76,10 +79,11 @@ class Scheduler:
             self.sheet.view(),
             self.rubble.blocks(),
             load,
-            (*report.events, *self.rubble.events(self.t_ns, load.sum(axis=0))),
-            books,
-            budget,
-            report.contact,
+            events=(*report.events, *self.rubble.events(self.t_ns, load.sum(axis=0))),
+            ledger=books,
+            budget=budget,
+            contact=report.contact,
+            motion=self.motion,
         )
 
     def _window(self) -> int:
@@ -113,6 +117,18 @@ class Scheduler:
             sheet()
             rubble()
             vars(self.ledger).update(deepcopy(balances))
+
+        return restore
+
+    def checkpoint(self) -> Restore:
+        """The whole run between two windows, with its clock; for a scheme that has ``save``."""
+        back, clock = self.save(), {name: deepcopy(getattr(self, name)) for name in CLOCK}
+        scheme: Restore = self._scheme.save()  # type: ignore[attr-defined]
+
+        def restore() -> None:
+            back()
+            scheme()
+            vars(self).update(deepcopy(clock))
 
         return restore
 

@@ -97,6 +97,9 @@ class Floe(ABC):
     def set_window(self, dt: float) -> None:
         """Length of the windows from now on [s]."""
 
+    def window_by_window(self) -> None:  # noqa: B027 - only some take any
+        """From now on no window is taken ahead: what the edge meets then is not known."""
+
     # ---- between two windows ----------------------------------------------------------------------------------
 
     def save(self) -> Memory:

@@ -61,7 +61,7 @@ class LongSteps:
     """The long step under way, and how long the next one may be."""
 
     def __init__(self, longest: int, dt: float):
-        """At most ``longest`` windows of ``dt`` [s] in one step."""
+        """At most ``longest`` windows of ``dt`` [s] in one step; 0: never more than one, whatever their length."""
         self._longest, self._windows, self._wait = longest, min(2, longest), 0
         self._longest_time = longest * dt
         self.under_way: LongStep | None = None
@@ -85,7 +85,7 @@ class LongSteps:
 
     def take(self, engine: Engine, t: float, dt: float, state: State, contact: EdgeContact) -> LongStep | None:
         """A new step from time t, unless it is not yet time for one or the step is refused."""
-        if self._wait > 0 or self._longest == 1:
+        if self._wait > 0 or self._longest <= 1:
             self._wait -= 1
             return None
         step = self._tried(engine, t, dt, state, contact)

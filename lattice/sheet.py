@@ -59,6 +59,11 @@ class Sheet(Floe):
             self.ahead.set_window(dt)
             self.dt = dt
 
+    def window_by_window(self) -> None:
+        """As `Floe.window_by_window`."""
+        self._drop_long_step()
+        self.ahead = LongSteps(0, self.dt)
+
     def retire(self, nodes: IntArray) -> None:
         """As `Floe.retire`; a long step is given up."""
         self._drop_long_step()

@@ -19,6 +19,7 @@ import numpy as np
 from rubble.arrays import Array, Record, Records, record
 from rubble.compiled import compiled
 from rubble.edges import Edges, sheet_speed
+from rubble.moving import Moving, speed_of_structure
 from rubble.plates import Plates
 from rubble.rows import BED, ICE, JOINT, SHEET, STRUCTURE, Rows, speed
 from rubble.water import Hulls
@@ -118,6 +119,7 @@ def book_contacts(
     before: tuple[Records, Records, Array],
     plates: Plates,
     edges: Edges,
+    moving: Moving,
     books: Record,
 ) -> None:
     """Adds what each contact of a sub-step takes.
@@ -138,6 +140,8 @@ def book_contacts(
             on_edge *= 0.5
             mean = 0.5 * (speed(way, plates_before[i], plates_before[k]) + speed(way, motion[i], motion[k]))
             books.on_sheet -= way.impulse * on_edge
+            if point.kind == STRUCTURE:
+                on_edge = speed_of_structure(moving, point, way)
             if d == 0:
                 lost -= way.impulse * (mean - on_edge)
             else:
@@ -193,3 +197,23 @@ def _on_nodes(nodes: Records, at: Record, x: float, y: float, z: float) -> None:
     rear.impulse_x += (1.0 - w) * x
     rear.impulse_y += (1.0 - w) * y
     rear.impulse_z += (1.0 - w) * z - x * at.lever
+
+
+@compiled(nogil=True)
+def book_structure(rows: Rows, count: int, moving: Moving) -> None:
+    """Impulses of a sub-step on the structure, with their moments, and what it does on plates by moving."""
+    out, d = moving.wrench, moving.place
+    for c in range(count):
+        point = rows.point[c]
+        if point.kind != STRUCTURE:
+            continue
+        x = y = z = 0.0
+        for k in range(3):
+            way = rows.way[c, k]
+            x, y, z = x - way.impulse * way.x, y - way.impulse * way.y, z - way.impulse * way.z
+            moving.work[0] += way.impulse * speed_of_structure(moving, point, way)
+        rx, ry, rz = point.x - d[0], point.y - d[1], point.z - d[2]
+        out[0], out[1], out[2] = out[0] + x, out[1] + y, out[2] + z
+        out[3] += ry * z - rz * y
+        out[4] += rz * x - rx * z
+        out[5] += rx * y - ry * x

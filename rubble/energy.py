@@ -25,6 +25,7 @@ def energy_terms(layer: RubbleLayer) -> dict[str, float]:
         "rubble_kinetic": moving,
         "rubble_potential": float(resting.sum()),
         "thrust_work": books["thrust"],
+        "rubble_structure_work": float(layer.runner.moving.work[0]),
         "sheet_work": books["on_sheet"],
         "drag_loss": books["drag_loss"],
         "dry_top_loss": -books["dry_work"],

@@ -12,8 +12,9 @@ from rubble.arrays import Array, IntArray, Record, Records
 from rubble.compiled import compiled
 from rubble.cut import nearest
 from rubble.edges import Edges, deeper_on_sheet
+from rubble.moving import Moving, aside, from_axes, turned
 from rubble.plates import Plates, times
-from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, set_real, short, step_space
+from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, short
 from rubble.rows import ICE, SHEET, STRUCTURE, Rows, go_on, set_arms, set_way
 from rubble.slices import Pieces, Slices, strayed
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
@@ -29,6 +30,7 @@ class Sections(NamedTuple):
     margin: Array  #: (k,) by which the structure in them is thicker than it is, see `section.Section` [m]
     space: IntArray  #: (k,) addresses of the spaces
     pairs: IntArray  #: (k,) addresses of their lists of pairs, `arbiters.LIST`
+    aside: Array  #: (k,) how far along y the structure had gone when it was cut [m]
     faces: Records  #: `cut.Cut.bearings` of all sections
     offset: IntArray  #: (k + 1,) section i owns faces[offset[i]:offset[i + 1]]
     step: int  #: address of cpSpaceStep
@@ -52,28 +54,7 @@ class Scene(NamedTuple):
     shortest: float  #: least length of a contact [m]
     cut: int  #: number of the sub-step in which the slices are new
     bed: float  #: height of the sea bed, -inf without one [m]
-
-
-@compiled(nogil=True)
-def find_pairs(scene: Scene) -> None:
-    """Put the bodies where plates and edges are, and let pymunk find contacts, section by section."""
-    plates, slices, sections, edges = scene.plates, scene.slices, scene.sections, scene.edges
-    layout = sections.body
-    for s in range(slices.body.shape[0]):
-        k = slices.plate[s]
-        r, b, p, body = plates.rotation[k], slices.anchor[s], plates.position[k], slices.body[s]
-        x, _, z = times(r, b[0], b[1], b[2])
-        set_real(body + layout.x, p[0] + x)
-        set_real(body + layout.z, p[2] + z)
-        set_real(body + layout.angle, np.arctan2(r[2, 0], r[0, 0]))
-    for e in range(edges.body.shape[0]):
-        if edges.body[e] != 0:
-            foremost = edges.nodes[edges.offset[e]]
-            set_real(edges.body[e] + layout.x, foremost.x)
-            set_real(edges.body[e] + layout.z, foremost.z)
-    for i in range(sections.space.shape[0]):
-        carray(pointer(sections.pairs[i]), 1, LIST)[0].count = 0
-        step_space(sections.step, sections.space[i], scene.dt)
+    moving: Moving  #: the structure
 
 
 @compiled(nogil=True)
@@ -136,12 +117,14 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
     n_y = 0.0
     if a == STRUCTURE_SLOT:
         point.kind = STRUCTURE
-        n_y, deeper = _on_structure(scene, section, point, nx)
+        n_y, deeper = _on_structure(scene, section, point, nx, nz)
         depth += deeper
-    elif a == SHEET_SLOT:
+    point.x, point.z = from_axes(scene.moving, scene.sections.y[section], point.x, point.z)
+    nx, nz = turned(scene.moving, nx, nz)
+    if a == SHEET_SLOT:
         point.kind, point.edge = SHEET, section
         depth += deeper_on_sheet(scene.edges, section, point, nx, nz)
-    else:
+    elif a != STRUCTURE_SLOT:
         point.a = scene.slices.plate[a]
         n_y = _lean(scene, a, b, nx, nz)
         depth += n_y * (strayed(scene.plates, scene.slices, a) - strayed(scene.plates, scene.slices, b))
@@ -169,31 +152,33 @@ def _face_of(scene: Scene, s: int, px: float, pz: float) -> int:
 
 
 @compiled(nogil=True)
-def _on_structure(scene: Scene, section: int, point: Record, nx: float) -> tuple[float, float]:
-    """n_y of the structure over its part in the plane, whose part along x is ``nx``; by how much the contact is deeper.
+def _on_structure(scene: Scene, section: int, point: Record, nx: float, nz: float) -> tuple[float, float]:
+    """n_y of the structure over its part in the plane, (nx, nz); by how much the contact is deeper.
 
     A piece that one plane alone cuts counts with the surface at its own middle, so that this recedes as it slides round
     the structure. On a body of revolution the surface at another y has the same radius; on a facet it goes along it.
+    All in the structure's axes; where that has gone aside it stands there with the surface of another y.
     """
-    sections, slices, pieces = scene.sections, scene.slices, scene.pieces
+    sections, slices, pieces, moving = scene.sections, scene.slices, scene.pieces, scene.moving
     faces = sections.faces[sections.offset[section] : sections.offset[section + 1]]
-    face, r, b = faces[nearest(faces, point.x, point.z)], scene.plates.rotation[point.b], slices.anchor[point.slot_b]
+    x, away, cut = point.x, aside(moving, point.x, point.z), point.y - sections.aside[section]
+    face, r, b = faces[nearest(faces, x, point.z)], scene.plates.rotation[point.b], slices.anchor[point.slot_b]
     i, y = slices.piece[point.slot_b], scene.plates.position[point.b, 1]
     if pieces.range[i, 0] == pieces.range[i, 1]:
         y += r[1, 1] * pieces.y[i]
     else:
         y += r[1, 0] * b[0] + r[1, 1] * b[1] + r[1, 2] * b[2]
     y = min(max(y, point.y - 0.5 * scene.pitch), point.y + 0.5 * scene.pitch)
-    radius = np.hypot(point.x, point.y)
+    point.y, y = y, y - away
+    radius, lean = np.hypot(x, cut), moving.place[5] * nx - moving.place[3] * nz
     least = max(radius, 1e-300) / STEEPEST
-    x, shift = point.x, -face.constant * (y - point.y)
+    at, shift = x, -face.constant * (y - cut)
     if face.radial != 0.0:
-        x = np.copysign(max(np.sqrt(max(radius * radius - y * y, 0.0)), least), point.x)
-        shift = x - point.x
-    elif abs(x) < least:
-        x = np.copysign(least, x)
-    point.y = y
-    return nx * (face.constant + face.radial * y / x), shift * nx
+        at = np.copysign(max(np.sqrt(max(radius * radius - y * y, 0.0)), least), x)
+        shift = at - x
+    elif abs(at) < least:
+        at = np.copysign(least, at)
+    return nx * (face.constant + face.radial * y / at) + lean, shift * nx
 
 
 @compiled(nogil=True)

@@ -19,6 +19,7 @@ from rubble.domain import Domain
 from rubble.geometry import overlap_area
 from rubble.joints import no_joints
 from rubble.lost import Lost
+from rubble.moving import moved_cut, stand
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate, Slab, Start, one_piece
 from rubble.prism import Prism
@@ -80,7 +81,8 @@ class RubbleLayer(Readings):
 
     def trim(self, polygon: Array, section: int) -> Array:
         """What is left of an outline (k, 2) outside the structure in a section, convex; (0, 2) if nothing is."""
-        return self.section(section).trim(polygon)
+        own = self.section(section)
+        return moved_cut(own.trim, self.runner.moving, own.y, polygon)
 
     def add_block(
         self,
@@ -158,6 +160,11 @@ class RubbleLayer(Readings):
             own.sheet = None
             self.table_of_sections.changed = True
 
+    def set_structure(self, place: Array, velocity: Array) -> None:
+        """Displacement (6,) of a structure that moves at the start of a window, and velocity (6,) over it."""
+        stand(self.runner.moving, place, velocity)
+        self.table_of_sections.go_aside(float(place[1]))
+
     def set_yields(self, keys: Sequence[int], yields: Array | None) -> None:
         """How the sheet's edges in these sections yield to impulses on each of them (2, k, k), x and z [1/kg].
 
@@ -209,7 +216,8 @@ class RubbleLayer(Readings):
 
     def _clear(self) -> None:
         x, y, z = self.store.plates.position[:-1].T
-        inside = self.domain.holds(x, y, z)
+        place = self.runner.moving.place
+        inside = self.domain.holds(x - place[0], y - place[1], z)
         if inside.all():
             return
         out = [self.store.list[i] for i in np.flatnonzero(~inside)]

@@ -64,6 +64,11 @@ class Readings:
         phase = np.array([p.sliding for p in self.blocks], np.bool_) == sliding
         return np.asarray(self.load_on_structure[phase].sum(axis=0))
 
+    @property
+    def wrench_on_structure(self) -> Array:
+        """Mean load of all plates over the last window, and its moment about the structure's waterline point (6,)."""
+        return self.runner.moving.wrench / max(self.runner.window, 1e-300)
+
     def contact_centres(self) -> Array:
         """Where each plate presses on the structure: mean x, y and z (n, 3) of its contacts, weighted with impulse.
 

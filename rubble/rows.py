@@ -15,6 +15,7 @@ from rubble.arrays import Record, Records, record
 from rubble.compiled import compiled
 from rubble.edges import Edges, lightness, sheet_speed
 from rubble.friction import rate_dependent
+from rubble.moving import Moving, speed_of_structure
 from rubble.plates import Plates
 
 ICE, STRUCTURE, SHEET, JOINT, BED = 0, 1, 2, 3, 4  #: kinds of rows
@@ -142,8 +143,10 @@ def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
 
 
 @compiled(nogil=True)
-def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surface, dt: float) -> None:
+def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, moving: Moving, surface: Surface, dt: float) -> None:
     """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step.
+
+    Against a structure that moves the speed to go for is that of its surface.
 
     What a contact gives back is the overlap into which its ends have moved. Pieces of ice that two planes do not both
     see may be found deep in each other when one of them comes into a plane; a slice that is cut anew, or pushed along
@@ -155,15 +158,19 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, surface: Surf
     for c in range(count):
         point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
         a, b = motion[point.a], motion[point.b]
-        u = speed(n, a, b) - sheet_speed(nodes, moves, point, n)
+        goes_n = goes_t = goes_s = 0.0
+        if point.kind == STRUCTURE:
+            goes_n, goes_t = speed_of_structure(moving, point, n), speed_of_structure(moving, point, t)
+            goes_s = speed_of_structure(moving, point, s)
+        u = speed(n, a, b) - sheet_speed(nodes, moves, point, n) - goes_n
         mu = surface.mu_structure if point.kind == STRUCTURE else surface.mu_ice
         mu = surface.mu_bed if point.kind == BED else mu
         if mu < 0.0:
-            v = speed(t, a, b) - sheet_speed(nodes, moves, point, t)
-            w = speed(s, a, b) - sheet_speed(nodes, moves, point, s)
+            v = speed(t, a, b) - sheet_speed(nodes, moves, point, t) - goes_t
+            w = speed(s, a, b) - sheet_speed(nodes, moves, point, s) - goes_s
             mu = rate_dependent(np.sqrt(v * v + w * w))
         point.mu = mu
-        n.target, t.target, s.target = -surface.restitution * u, 0.0, 0.0
+        n.target, t.target, s.target = goes_n - surface.restitution * u, goes_t, goes_s
         over = max(point.depth - surface.slop, 0.0)
         if point.anew:
             both = u + speed(n, plates.shift[point.a], plates.shift[point.b])

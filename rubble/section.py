@@ -43,6 +43,7 @@ class Section:
 
     def __init__(self, physics: RubblePhysics, cut: Cut, y: float, pitch: float) -> None:
         self.physics, self.cut, self.y = physics, cut, y
+        self.aside = 0.0  #: way along y of the structure for which this is the cut [m]
         #: by so much pymunk sees the structure thicker than it is [m]: half a section to the side, a face that leads
         #: out of the plane by less than 45 degrees stands by less than this in front of the one in the plane
         self.margin = 0.5 * pitch if cut.bearings["constant"].any() or cut.bearings["radial"].any() else 0.0
@@ -54,11 +55,7 @@ class Section:
     def connect(self) -> None:
         """A new space with the structure in it; slices and sheet come afterwards."""
         self.space = _new_space()
-        for solid in self.cut.polygons:
-            shape = pymunk.Poly(self.space.static_body, solid.tolist(), radius=self.margin)
-            shape.collision_type = STRUCTURE
-            shape.filter = pymunk.ShapeFilter(categories=STRUCTURE_CATEGORY)
-            self.space.add(shape)
+        self._stand()
         data = self.pairs.list.ctypes.data
         for a, b in ((ICE, ICE), (ICE, STRUCTURE)):
             handler = lib.cpSpaceAddCollisionHandler(self.space._space, a, b)
@@ -66,6 +63,20 @@ class Section:
             handler.userData = ffi.cast("void *", data)
         if self.sheet is not None:
             self.sheet.enter(self.space)
+
+    def _stand(self) -> None:
+        """The structure's shapes as they are cut."""
+        for solid in self.cut.polygons:
+            shape = pymunk.Poly(self.space.static_body, solid.tolist(), radius=self.margin)
+            shape.collision_type = STRUCTURE
+            shape.filter = pymunk.ShapeFilter(categories=STRUCTURE_CATEGORY)
+            self.space.add(shape)
+
+    def cut_anew(self, cut: Cut, aside: float) -> None:
+        """The structure has gone along y by ``aside`` [m]."""
+        self.space.remove(*self.space.static_body.shapes)
+        self.cut, self.slopes, self.aside = cut, cut.slopes, aside
+        self._stand()
 
     def __getstate__(self) -> dict[str, Any]:
         return {k: v for k, v in self.__dict__.items() if k not in ("space", "pairs")}

@@ -14,6 +14,7 @@ from rubble.arrays import Array, IntArray
 from rubble.compiled import compiled
 from rubble.cut import Solids
 from rubble.gather import Sections
+from rubble.moving import ASIDE
 from rubble.physics import RubblePhysics
 from rubble.plates import Plates
 from rubble.pointers import address, arbiter_layout, body_layout, set_corners
@@ -39,15 +40,26 @@ class SectionTable:
         self._names = np.zeros(0, np.int64)
         self.slices = _rows(0)
         self.changed = True  #: sections or sheets have come or gone
+        self._aside = 0.0  #: how far the structure has gone along y [m]
 
     def section(self, key: int) -> Section:
         """The section with this number, made when first asked for."""
         if key not in self.by_key:
             y = self.origin + key * self.pitch
-            self.by_key[key] = Section(self.physics, self.solids(y), y, self.pitch)
+            own = Section(self.physics, self.solids(y - self._aside), y, self.pitch)
+            own.aside = self._aside
+            self.by_key[key] = own
             self.by_key = dict(sorted(self.by_key.items()))
             self.changed = True
         return self.by_key[key]
+
+    def go_aside(self, way: float) -> None:
+        """The structure has gone so far along y [m]: where that is far for a section, it is cut anew."""
+        if abs(way - self._aside) <= ASIDE * self.pitch:
+            return
+        self._aside, self.changed = way, True
+        for section in self.by_key.values():
+            section.cut_anew(self.solids(section.y - way), way)
 
     def in_use(self, store: Store) -> list[int]:
         """Numbers of the sections that the plates stand in now, ascending."""
@@ -118,11 +130,13 @@ class SectionTable:
             np.array([s.y for s in sections]),
             np.array([s.margin for s in sections]),
             np.array([space_address(s) for s in sections], np.int64),
-            np.array([list_address(s) for s in sections], np.int64),
-            faces,
-            offset,
-            STEP,
-            *LAYOUTS,
+            pairs=np.array([list_address(s) for s in sections], np.int64),
+            aside=np.array([s.aside for s in sections]),
+            faces=faces,
+            offset=offset,
+            step=STEP,
+            arbiter=LAYOUTS[0],
+            body=LAYOUTS[1],
         )
 
     def make_room(self) -> None:

@@ -10,11 +10,12 @@ from rubble.arrays import Array, IntArray, Records
 from rubble.banks import Banks, bank_rows
 from rubble.bed import bed_rows
 from rubble.bending import Loaded, sum_bending
-from rubble.books import book_contacts, book_step, kick, outside, sum_contacts
+from rubble.books import book_contacts, book_step, book_structure, kick, outside, sum_contacts
 from rubble.compiled import compiled
 from rubble.edges import Edges, push_edge
-from rubble.gather import Scene, find_pairs, gather
+from rubble.gather import Scene, gather
 from rubble.joints import Joints, joint_rows
+from rubble.pairs import find_pairs
 from rubble.plates import Plates, move_all
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
@@ -79,7 +80,7 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         if found < 0:
             return NO_ROOM
         sums.counted[0], sums.counted[1] = found, stamp
-        set_laws(rows, contacts, plates, edges, window.surface, dt)
+        set_laws(rows, contacts, plates, edges, scene.moving, window.surface, dt)
         plate_forces(plates, window.hulls, window.water, forces, lowest)
         _sum_water(forces, dt, sums.water)
         outside(plates, window.hulls, forces, dt, sums.momenta)
@@ -93,7 +94,8 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         if window.planar:
             _flatten(plates)
         book_step(forces, before[0], plates, dt, books)
-        book_contacts(rows, found, before, plates, edges, books)
+        book_contacts(rows, found, before, plates, edges, scene.moving, books)
+        book_structure(rows, found, scene.moving)
         sum_contacts(rows, found, sums.plate, edges.nodes, sums.momenta)
         sum_bending(rows, found, plates, window.loaded)
         if found > 0 and 2 * found > rows.point.shape[0]:

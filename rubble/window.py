@@ -6,14 +6,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray, filled_room
-from rubble.banks import Banks, bank_room, find_banks
+from rubble.arrays import Array, IntArray
 from rubble.books import BOOKS, GROUND, SHIFT
 from rubble.breaking import Break, Breaking, part
 from rubble.edges import Edges
 from rubble.friction import coefficient
 from rubble.gather import Scene
 from rubble.joints import Joints
+from rubble.moving import resting
+from rubble.neighbours import Neighbours, no_neighbours
 from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
@@ -21,7 +22,6 @@ from rubble.plates import kinetic, momenta
 from rubble.rows import GIVES_WAY, Rows, Surface, grown, room
 from rubble.sections import SectionTable
 from rubble.shore import Yields, edges_of, keep
-from rubble.sides import Sides, find_sides, side_room
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
@@ -54,11 +54,11 @@ class Runner:
         self.window = 0.0  #: length of the last one [s]
         self._rows: tuple[Rows, Rows] = room(4096), room(4096)
         self._counted = np.zeros(2, np.int64)
-        self._most_sides, self._most_banks = 256, 64
+        self._neighbours = Neighbours(physics.thickness)
         self._pressure: dict[int, Array] = {}
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
-        self.breaking = Breaking(physics)
+        self.breaking, self.moving = Breaking(physics), resting()
         self.broken = 0.0  #: energy that plates have lost by breaking again [J]
         self.edges: Edges
         self._run: Run
@@ -85,17 +85,18 @@ class Runner:
             self._rename(renamed)
         tables, plates = store.tables, store.plates
         tables.sums[:] = 0.0
-        self.water_impulse[:] = 0
+        self.water_impulse[:] = self.moving.wrench[:] = 0
         self.edges = edges_of(sections, self.yields)
         scene = self._scene(store, sections, self.edges)
+        sides, banks = no_neighbours() if self.planar else self._neighbours.find(scene)
         window = Window(
             iterations=int(self.physics.iterations),
             surface=self._surface(),
             water=self.water,
             hulls=tables.hulls,
             thrust=tables.thrust,
-            sides=side_room(0) if self.planar else self._sides(scene, store),
-            banks=bank_room(0) if self.planar else self._banks(scene, store),
+            sides=sides,
+            banks=banks,
             joints=joints,
             loaded=self.breaking.begin(store),
             planar=self.planar,
@@ -163,23 +164,8 @@ class Runner:
             shortest=shortest,
             cut=int(self._counted[1]) + 1,
             bed=self.bed,
+            moving=self.moving,
         )
-
-    def _sides(self, scene: Scene, store: Store) -> Sides:
-        """Pairs of slices that may meet between two sections."""
-        section, pieces = scene.slices.section, store.tables.pieces
-        order = np.argsort(section, kind="stable")
-        first = np.searchsorted(section[order], np.arange(len(scene.sections.y) + 1))
-        sides = filled_room(side_room, self._most_sides, lambda into: find_sides(scene, pieces, first, order, into))
-        self._most_sides = max(self._most_sides, len(sides.area))
-        return sides
-
-    def _banks(self, scene: Scene, store: Store) -> Banks:
-        """Slices that may meet a side of the sheet."""
-        pieces, h = store.tables.pieces, self.physics.thickness
-        banks = filled_room(bank_room, self._most_banks, lambda into: find_banks(scene, pieces, h, into))
-        self._most_banks = max(self._most_banks, len(banks.area))
-        return banks
 
     def _surface(self) -> Surface:
         p = self.physics
@@ -223,8 +209,8 @@ class Runner:
         if not finite.all():
             number = store.list[int(np.argmin(finite))].id
             raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
-        tables, planes = store.tables, list(sections.by_key.values())
-        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.physics.align_tolerance)
+        tables, planes, align = store.tables, list(sections.by_key.values()), self.physics.align_tolerance
+        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.moving, align)
 
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""

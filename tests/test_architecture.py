@@ -26,6 +26,8 @@ LIBRARIES = {
     "pyvista": {"cosim/export/vtk.py", "cosim/show/view3d.py"},
     "xarray": {"cosim/export/netcdf.py", "cosim/api/run.py"},
     "rerun_cli": {"cosim/show/viewer.py"},
+    "fmpy": {"cosim/fmi/structure.py"},
+    "pythonfmu": {"cosim/fmi/brash_ice.py", "cosim/fmi/write.py"},
 }
 SOLVER_LIBRARIES = {"pymunk": "rubble", "typer": "cosim", "rich": "cosim", "pydantic": "cosim", "pint": "cosim"}
 SOURCES = sorted(file for package in PACKAGES for file in (ROOT / package).rglob("*.py"))

@@ -15,6 +15,7 @@ import numpy as np
 from cosim.analysis.instants import events_of
 from cosim.analysis.peaks import at_peak
 from cosim.analysis.run_data import RunData
+from coupling.energy import MOVING
 from coupling.interface import NS, Array
 
 #: energy terms of no physics: below zero they have put energy in
@@ -41,11 +42,11 @@ class Light:
 
 
 def numerics_share(run: RunData) -> float | None:
-    """Energy that came from numerics over the work of the drift, at the end of the run."""
-    work = _last(run, "drift_work")
+    """Energy from numerics over the work of the drift, or of a structure that moves, at the end of the run."""
+    work = max(abs(_last(run, "drift_work") or 0.0), abs(_last(run, MOVING) or 0.0))
     if not work:
         return None
-    return sum(max(-(_last(run, name) or 0.0), 0.0) for name in NUMERICS) / abs(work)
+    return sum(max(-(_last(run, name) or 0.0), 0.0) for name in NUMERICS) / work
 
 
 def staggering_share(run: RunData) -> float | None:

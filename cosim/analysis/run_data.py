@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from cosim.analysis.sustained import at_event, running_mean
-from coupling.interface import NS, PHASES, Array, Event, IntArray
+from coupling.interface import FREEDOMS, NS, PHASES, Array, Event, IntArray
 
 #: components of a load in recordings, and with the resultant ``f``
 AXES = ("fx", "fy", "fz")
@@ -19,6 +19,8 @@ COMPONENTS = (*AXES, "f")
 #: components of a moment, and with the overturning one, about a horizontal axis, ``m``
 MOMENT_AXES = ("mx", "my", "mz")
 MOMENTS = (*MOMENT_AXES, "m")
+#: of a structure that moves: displacements [m], [rad], then velocities
+MOTION = (*FREEDOMS, *(f"{name}_rate" for name in FREEDOMS))
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,7 @@ class RunData:
     ended: str = "complete"  #: how the run ended, in words if it did not reach its duration or failed there
     cut: bool = False  #: the file ends before its end
     moment: Array | None = None  #: (n, 3, 3) about `moment_point`: windows, phases, components; None: unknown [N m]
+    motion: dict[str, Array] = field(default_factory=dict)  #: (n,) by name of `MOTION`; empty where the structure rests
     weight: Array | None = None  #: (n, 4) of the point of attack, see `cosim.moments.Grip.weight`; None: unknown
 
     @property

@@ -68,6 +68,13 @@ class Run:
         return budget(self.data)
 
     @cached_property
+    def motion(self) -> pd.DataFrame:
+        """Displacement and velocity of a structure that moves, of every window [m], [rad]."""
+        from cosim.export.tables import motion
+
+        return motion(self.data)
+
+    @cached_property
     def summary(self) -> dict[str, Any]:
         """What identifies the run, peaks, moments, lights and events, as ``cosim info --json`` prints it."""
         from cosim.analysis.summary import summary

@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cosim.cli import authoring, recordings, scenarios, simulate, sweeping
+from cosim.cli import authoring, coupling, recordings, scenarios, simulate, sweeping
 from cosim.errors import explain
 from cosim.plain import one_line
 from cosim.signals import StoppedError, handled
@@ -28,6 +28,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "scale": authoring.scale,
     "keys": authoring.keys,
     "check": authoring.check,
+    "fmu": coupling.fmu,
     "run": simulate.run,
     "resume": simulate.resume,
     "sweep": sweeping.sweep,

@@ -44,6 +44,9 @@ def dataset(run: RunData) -> xr.Dataset:
         variables[f"ledger_{name}"] = (("time",), values, {"units": unit_of_balance(name)})
     for name, values in run.budget.items():
         variables[f"budget_{name}"] = (("time",), values, {"units": "N", **MEAN})
+    for k, (name, values) in enumerate(run.motion.items()):
+        unit = ("m" if k % 6 < 3 else "rad") + ("/s" if k >= 6 else "")
+        variables[f"structure_{name}"] = (("time",), values, {"units": unit})
     about_time = {"units": "s", "long_name": "simulated time, end of the window", "axis": "T", "bounds": "time_bounds"}
     coordinates = {
         "time": ("time", run.t, about_time),

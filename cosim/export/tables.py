@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cosim.analysis.run_data import AXES, COMPONENTS, MOMENT_AXES, MOMENTS, RunData
+from cosim.analysis.run_data import AXES, COMPONENTS, MOMENT_AXES, MOMENTS, MOTION, RunData
 from cosim.moments import attack_of
 from coupling.interface import NS, PHASES
 
@@ -59,6 +59,13 @@ def ledger(run: RunData) -> pd.DataFrame:
     return _table(run, run.ledger, {TIME: "s"} | {name: unit_of_balance(name) for name in run.ledger})
 
 
+def motion(run: RunData) -> pd.DataFrame:
+    """Displacement and velocity of a structure that moves, after every window; without columns where it rests."""
+    units = {name: "m" if k % 6 < 3 else "rad" for k, name in enumerate(MOTION)}
+    units |= {name: f"{units[name]}/s" for name in MOTION[6:]}
+    return _table(run, run.motion, {TIME: "s"} | units)
+
+
 def budget(run: RunData) -> pd.DataFrame:
     """What carries the load, of every window [N]; see `coupling.budget`."""
     return _table(run, run.budget, {TIME: "s"} | dict.fromkeys(run.budget, "N"))
@@ -68,6 +75,8 @@ def budget(run: RunData) -> pd.DataFrame:
 UNITS = (
     ("power_error", "1"),
     ("power_", "W"),
+    ("structure_power_", "W"),
+    ("_repeats", "1"),
     ("cleared_momentum_", "N s"),
     ("crushed_momentum_", "N s"),
     *((ending, "1") for ending in ("_error", "_change", "_windows")),
@@ -93,4 +102,5 @@ TABLES: dict[str, Callable[[RunData], pd.DataFrame]] = {
     "events": events,
     "ledger": ledger,
     "budget": budget,
+    "motion": motion,
 }

@@ -75,6 +75,12 @@ CHANNELS: dict[str, Channel] = {
     "/view/rubble": Channel(SceneUpdate, When.VIEW, views.rubble_scene, "blocks as prisms, coloured by phase"),
     "/view/outline": Channel(PointCloud, When.VIEW, views.rubble_outline, "points on the edges of the blocks"),
     "/load/budget": Channel(messages.Ledger, When.WINDOW, numbers.budget, "what carries the load [N]"),
+    "/structure/motion": Channel(
+        messages.Ledger,
+        When.WINDOW,
+        numbers.motion,
+        "of a structure that moves: `surge` to `yaw` [m], [rad], and `surge_rate` to `yaw_rate`",
+    ),
 }
 
 

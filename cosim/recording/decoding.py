@@ -12,7 +12,8 @@ from cosim.analysis.run_data import RunData
 from cosim.recording import messages
 from coupling.interface import NS, Array, Event, IntArray
 
-DATA_TOPICS = ("/load/structure", "/events", "/ledger", "/load/budget")
+NAMED = ("/ledger", "/load/budget", "/structure/motion")  #: topics of numbers by name
+DATA_TOPICS = ("/load/structure", "/events", *NAMED)
 KEPT = (*messages.LOAD_FIELDS[3:], *messages.MOMENT_FIELDS[3:], *messages.GRIP_FIELDS[:4])  #: of a load; others follow
 Stored = tuple[str, int, bytes]  #: topic, time [ns], serialised message
 
@@ -23,7 +24,7 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
     t_ns: list[int] = []
     loads: list[list[float]] = []
     events: list[Event] = []
-    named: dict[str, list[tuple[int, dict[str, float]]]] = {"/ledger": [], "/load/budget": []}
+    named: dict[str, list[tuple[int, dict[str, float]]]] = {topic: [] for topic in NAMED}
     for topic, time, data in stored:
         if topic == "/load/structure":
             if not (t_ns[-1] if t_ns else 0) < time <= end:
@@ -49,6 +50,7 @@ def decode(name: str, metadata: Mapping[str, str], texts: Mapping[str, str], sto
         texts,
         _columns(times, named["/load/budget"]),
         moment=columns[:, 9:18].reshape(-1, 3, 3),
+        motion=_columns(times, named["/structure/motion"]),
         weight=columns[:, 18:],
     )
 

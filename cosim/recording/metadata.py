@@ -101,7 +101,7 @@ CHECKS: dict[str, Callable[[str], bool]] = {
     "nodes": _list_of(int, 2),
     "spacing_m": _length,
     "thickness_m": _length,
-    "drift_m_s": _length,
+    "drift_m_s": lambda text: 0.0 <= float(text) < math.inf,
     "ice_density": _length,
     "duration_ns": _whole(1),
     "window_ns": _whole(1),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
+from cosim.analysis.run_data import MOTION
 from cosim.moments import grip_of
 from cosim.observer import RunInfo
 from cosim.recording import messages, scenes
@@ -35,6 +36,11 @@ def ledger(_info: RunInfo, frame: Frame) -> bytes | None:
 def budget(_info: RunInfo, frame: Frame) -> bytes | None:
     """`cosim.Ledger`: what carries the load, by name [N]."""
     return named(frame.t_ns, frame.budget)
+
+
+def motion(_info: RunInfo, frame: Frame) -> bytes | None:
+    """`cosim.Ledger`: displacement and velocity of the structure at the end of the window; None where it rests."""
+    return None if frame.motion is None else named(frame.t_ns, dict(zip(MOTION, frame.motion.ravel(), strict=True)))
 
 
 def named(t_ns: int, terms: dict[str, float]) -> bytes | None:

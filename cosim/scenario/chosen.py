@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from cosim.scenario.lengths import approach
+
 WINDOW, SUBSTEP = 0.05, 0.005  #: of ice of 1 m at 9.81 m/s2, and at most [s]
 WAY = 0.1  #: largest part of a cell that the ice drifts in a window
 LONG = 4  #: windows in the longest step of the sheet
@@ -22,7 +24,7 @@ def filled(m: Any) -> Any:
     unit = math.sqrt(m.ice.thickness / m.water.gravity * 9.81)
     window, substep, longest = m.coupling.window, m.rubble.substep, m.fracture.longest_step
     if window is None:
-        window = _below(min(_nearest(WINDOW * unit), WINDOW), WAY * m.sheet.spacing / m.drift.velocity)
+        window = _below(min(_nearest(WINDOW * unit), WINDOW), WAY * m.sheet.spacing / max(approach(m), 1e-9))
         least = LEAST * (substep or 0.0)
         window = max(window, next((step for step in SERIES if step >= least), window))
     if substep is None:

@@ -23,7 +23,7 @@ from cosim.scenario.units import (
     TimeOrZero,
     Toughness,
     Unit,
-    Velocity,
+    VelocityOrZero,
     list_of,
 )
 from cosim.scenario.variation import FieldSection
@@ -155,8 +155,8 @@ class Sheet(Section):
 class Drift(Section):
     """[drift] Motion of the ice far away."""
 
-    #: of the ice along +x, towards the structure [m/s]
-    velocity: Annotated[Velocity, Limits("1 um/s", "20 m/s", "0.3 m/s")]
+    #: of the ice along +x, towards the structure; 0 for ice at rest that a moving structure meets [m/s]
+    velocity: Annotated[VelocityOrZero, Limits("0 m/s", "20 m/s", "0.3 m/s")]
 
 
 class Fracture(Section):

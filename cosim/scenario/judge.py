@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cosim.scenario.lengths import breaking_length, characteristic_length, drift_in_run, width_at_waterline
+from cosim.scenario.lengths import approach, breaking_length, characteristic_length, drift_in_run, width_at_waterline
 from lattice.floe import LOOSE
 
 NODES_PER_LENGTH = 5.0  #: least number of cells in the characteristic length
@@ -62,11 +62,12 @@ def densities(m: Any) -> Doubts:
 
 def drift(m: Any) -> Doubts:
     """Slow ice creeps, which the model leaves out; fast ice throws water."""
-    froude = m.drift.velocity / (m.water.gravity * m.ice.thickness) ** 0.5
-    if froude < 1e-3:
-        yield Doubt("drift.velocity", f"{m.drift.velocity:g} m/s; ice that slow creeps, which this model leaves out")
+    speed = approach(m)
+    froude = speed / (m.water.gravity * m.ice.thickness) ** 0.5
+    if froude < 1e-3 and not (m.structure.motion is not None and m.structure.motion.file):
+        yield Doubt("drift.velocity", f"{speed:g} m/s; ice that slow creeps, which this model leaves out")
     elif froude > 1.0:
-        yield Doubt("drift.velocity", f"{m.drift.velocity:g} m/s; usual is up to 1 m/s, and waves are left out")
+        yield Doubt("drift.velocity", f"{speed:g} m/s; usual is up to 1 m/s, and waves are left out")
 
 
 def mesh(m: Any) -> Doubts:

@@ -57,5 +57,12 @@ def _around_the_waterline(profile: Any) -> tuple[tuple[float, float], tuple[floa
 
 
 def drift_in_run(model: Any) -> float:
-    """How far the ice drifts in the run [m]."""
-    return float(model.drift.velocity * model.scenario.duration)
+    """How far the ice drifts in the run, seen from a structure that moves steadily [m]."""
+    return float(approach(model) * model.scenario.duration)
+
+
+def approach(model: Any) -> float:
+    """Speed at which ice and structure come together, 0 where they do not, or are moved by a series [m/s]."""
+    motion = model.structure.motion
+    steady = None if motion is None else motion.velocity
+    return max(float(model.drift.velocity) - (float(steady[0]) if steady else 0.0), 0.0)

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from cosim.scenario.limits import Limits
+from cosim.scenario.moving import StructureMotion
 from cosim.scenario.names import ContactModel, StructureKind
 from cosim.scenario.section import Friction, Section
 from cosim.scenario.units import (
@@ -49,6 +50,7 @@ class Structure(Section):
     toe_depth: Annotated[Length, Limits("1 mm", "990 m", "6 m")] = None
     #: height of the structure above water; over a lower one ice may ride [m]
     top: Annotated[Length, Limits("1 mm", "500 m", "4 m")] = 5.0
+    motion: StructureMotion | None = None
 
     @property
     def toe(self) -> float | None:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cosim.analysis.run_data import RunData
-from cosim.show import budget_figure
+from cosim.show import budget_figure, motion_figure
 from cosim.show.cells import over_text
 from cosim.show.ice.palette import PHASE_COLOURS
 from cosim.show.scale import scale_of
-from coupling.energy import LIMIT, LOAD_WORK
+from coupling.energy import LIMIT, LOAD_WORK, MOVING
 from coupling.interface import PHASES, Array
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ def has_data(title: str, run: RunData) -> bool:
         "drift": {"drift_work", "energy_residual"} <= set(run.ledger),
         "carries": bool(run.budget),
         "left": set(ICE[1:]) <= set(run.ledger),
+        "Motion": bool(run.motion),
     }
     return all(there for word, there in needs.items() if word in title)
 
@@ -102,7 +103,7 @@ def draw_energy(figure: Figure, run: RunData) -> None:
     """Where the drift's work is or went, what else put energy in (below zero), and what is not explained."""
     ax, low = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
     loads = [name for name in run.ledger if name.endswith(LOAD_WORK)]
-    joule = energy_group(run, ["drift_work", *loads])
+    joule = energy_group(run, ["drift_work", MOVING, *loads])
     scale = scale_of((np.nanmax(np.abs(joule)),), "J")
     work = joule / scale.size
     groups = {name: energy_group(run, names) / scale.size for name, (_, names) in ENERGY.items()}
@@ -110,7 +111,13 @@ def draw_energy(figure: Figure, run: RunData) -> None:
     ax.stackplot(run.t, np.maximum(list(groups.values()), 0.0), labels=list(groups), colors=colours, lw=0)
     ax.stackplot(run.t, np.minimum(list(groups.values()), 0.0), colors=colours, lw=0)
     ax.plot(run.t, work, "w", lw=3.0)
-    ax.plot(run.t, work, "k", lw=1.4, label="work of the drift" + ", of loads" * bool(loads))
+    ax.plot(
+        run.t,
+        work,
+        "k",
+        lw=1.4,
+        label="work of the drift" + ", of loads" * bool(loads) + ", of the structure" * (MOVING in run.ledger),
+    )
     ax.axhline(0.0, color="k", lw=0.6)
     ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
     ax.set(ylabel=f"energy [{scale.unit}]", xlim=(0.0, run.t[-1]))
@@ -134,4 +141,5 @@ FIGURES: dict[str, Callable[[Any, RunData], None]] = {
     "What carries the load": budget_figure.draw,
     "Ice that has left the sheet": draw_mass,
     "Where the work of the drift went": draw_energy,
+    "Motion of the structure": motion_figure.draw,
 }

@@ -32,7 +32,8 @@ from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
 from cosim.show.pictures import still_meshes
 from cosim.show.viewer import screen_viewer, web_viewer
-from coupling.interface import NS, PHASES, Array, Event, Phase
+from coupling.interface import FREEDOMS, NS, PHASES, Array, Event, Phase
+from coupling.structure.moved import turned
 
 APPLICATION = "cosim"
 TOTAL_RGB, MEASURED_RGB, DRIFT_RGB = (235, 235, 235), (250, 220, 70), (120, 200, 255)
@@ -89,6 +90,8 @@ def send(sink: rr.RecordingStream, recording: Path, run: RunData, measured: Meas
     send_still(sink, recording, scene, section)
     for picture in recorded_pictures(recording):
         send_picture(sink, picture, scene, section)
+        if run.motion:
+            sink.log("world/structure", _placed(run, picture.t_ns))
     sink.flush()
 
 
@@ -118,6 +121,13 @@ def send_picture(sink: rr.RecordingStream, picture: Picture, scene: Scene, secti
     for strips in moving_strips(scene, picture, section):
         sink.log(strips.name, _strips(strips))
     sink.log("world/load", _arrow(picture, scene))
+
+
+def _placed(run: RunData, t_ns: int) -> rr.Transform3D:
+    """Where a structure that moves is."""
+    k = min(int(np.searchsorted(run.t_ns, t_ns)), len(run.t_ns) - 1)
+    place = np.array([run.motion[name][k] for name in FREEDOMS])
+    return rr.Transform3D(translation=place[:3], mat3x3=turned(place[3:]))
 
 
 def shown_section(run: RunData, recording: Path) -> int:

@@ -10,7 +10,7 @@ from cosim.analysis.lights import trust_lines
 from cosim.show.cells import COMPARED, compare_cells, over_text
 from cosim.show.console import PlainTable, new_table, print_line, stdout
 from cosim.show.scale import Scale, scale_of, seconds, significant
-from coupling.energy import LOAD_WORK, STORES
+from coupling.energy import LOAD_WORK, MOVING, STORES
 from coupling.interface import PHASES
 
 COMPONENTS = ("fx", "fz", "f")
@@ -63,7 +63,8 @@ def ledger_lines(ledger: dict[str, float | None], full: bool = False) -> list[st
     if "drift_work" not in known:
         return lines
     work = known["drift_work"]
-    least = 0.0 if full else 0.05 * abs(work)
+    moved = known.get(MOVING, 0.0)
+    least = 0.0 if full else 0.05 * max(abs(work), abs(moved))
     terms = [
         (name, value)
         for name, value in known.items()
@@ -72,7 +73,8 @@ def ledger_lines(ledger: dict[str, float | None], full: bool = False) -> list[st
     scale = scale_of([work, *(value for _, value in terms)], "J")
     terms.sort(key=lambda term: -abs(term[1]))
     went = ", ".join(f"{name.removesuffix('_loss')} {scale.text(value)}" for name, value in terms)
-    return [*lines, f"energy [{scale.unit}]: work of the drift {scale.text(work)}; {went}"]
+    also = f", of the structure {scale.text(moved)}" if MOVING in known else ""
+    return [*lines, f"energy [{scale.unit}]: work of the drift {scale.text(work)}{also}; {went}"]
 
 
 def print_run(result: dict[str, Any], detail: int = 0) -> None:

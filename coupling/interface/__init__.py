@@ -1,8 +1,8 @@
 """The contract between the participants: what crosses, who owns it, in which units and signs.
 
 This room holds all of it and nothing else: `sheet` and `rubble` (the participants and what each hands out), `exchange`
-(forces between them, saved states), `structure` and `load` (what a structure and a load have to give), `frame` (what
-observers see), `units`.
+(forces between them, saved states), `structure`, `motion` and `load` (what a structure, its motion and a load have to
+give), `frame` (what observers see), `units`.
 
 Call order of one macro step (time window) of the serial-explicit scheme::
 
@@ -17,7 +17,10 @@ Call order of one macro step (time window) of the serial-explicit scheme::
 Other schemes call the same in another order (`coupling.schemes`). An implicit one repeats a window: both participants
 ``save()`` at its start, and calling what they return sets them back, as often as needed (`Restore`).
 
-Frame: SI units, right-handed, fixed to the structure. x = drift direction of the ice towards the structure,
+A structure that moves goes through every window with them (`coupling.moving`): it gives its path before the others move
+and is moved on by their mean load afterwards.
+
+Frame: SI units, right-handed, fixed to where the structure rests. x = drift direction of the ice towards the structure,
 y to the left, z up, z = 0 still water. The structure's axis is x = y = 0; the ice comes from -x.
 
 Loads are forces of the ice on the structure: Fx > 0 in drift direction, Fz > 0 lifts the structure.
@@ -30,6 +33,7 @@ Ownership: a participant owns the arrays that it hands out unless a method says 
 from coupling.interface.exchange import ForcePairs, Restore, SheetForces
 from coupling.interface.frame import Frame
 from coupling.interface.load import Load, SheetMotion
+from coupling.interface.motion import FREEDOMS, Motion, Path
 from coupling.interface.rubble import BlockTable, HandOver, RubbleParticipant
 from coupling.interface.sheet import (
     Answer,
@@ -45,6 +49,7 @@ from coupling.interface.structure import Structure
 from coupling.interface.units import NS, PHASES, Array, BoolArray, IntArray, Phase, SimulationError
 
 __all__ = [
+    "FREEDOMS",
     "NS",
     "PHASES",
     "Answer",
@@ -59,6 +64,8 @@ __all__ = [
     "HandOver",
     "IntArray",
     "Load",
+    "Motion",
+    "Path",
     "Phase",
     "Restore",
     "RubbleParticipant",

@@ -21,3 +21,5 @@ class Frame:
     ledger: dict[str, float] = field(default_factory=dict)  #: named balances of `coupling.ledger` [SI]
     budget: dict[str, float] = field(default_factory=dict)  #: what carries the load, see `coupling.budget` [N]
     contact: ContactForces = field(default_factory=ContactForces.none)  #: load of the sheet, node by node
+    #: (2, 6) displacement and velocity of the structure, see `coupling.interface.motion`; None: it rests
+    motion: Array | None = None

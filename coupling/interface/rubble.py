@@ -111,6 +111,15 @@ class RubbleParticipant(Protocol):
         """Mean power of the blocks' forces on the edges, by the motion of the edges as the rubble saw it [W]."""
         ...
 
+    @property
+    def on_structure(self) -> Array:
+        """Mean load of the blocks in the last window, and its moment about the structure's waterline point (6,)."""
+        ...
+
+    def set_structure(self, place: Array, velocity: Array) -> None:
+        """Displacement (6,) of the structure when the coming window begins, and velocity (6,) over it."""
+        ...
+
     def add(self, fragment: Fragment) -> HandOver:
         """Turns a fragment into blocks where and as it moves. The fragment is not kept."""
         ...

@@ -114,6 +114,8 @@ class SheetReport:
     loads: ForcePairs = field(default_factory=dict)  #: mean force of each `Load` on the sheet, by its name
     contact: ContactForces = field(default_factory=ContactForces.none)  #: the load, where it acts
     hinged: Array | None = None  #: (3,) part of the load that hinged pieces give; None: there are none [N]
+    #: (6,) mean load and moment about the waterline point of a structure that moves; None: it rests [N], [N m]
+    wrench: Array | None = None
 
 
 #: The rubble in lockstep: takes the fragments that have left since the window began, if it has not got them yet, moves

@@ -1,8 +1,8 @@
 """What a structure has to give, so that sheet and rubble can meet it: its cut, its normal, and the overlap of ice.
 
 A structure is any surface whose front, the side from which the ice comes, is met once by a line along x: in the plane y
-at height z it stands at `face_x`, with the outward normal n, n_x < 0. Solid is behind it. Nothing here knows time: a
-structure stands still.
+at height z it stands at `face_x`, with the outward normal n, n_x < 0. Solid is behind it. Nothing here knows time: this
+is the structure where it rests, and one that moves is met in its own frame (`coupling.structure.moved`).
 
 Sections of rubble see the plane cut (`section`) and press in the plane. The third dimension comes back by the ratio
 n_y / n_x of the face (`bearing`): ice presses along -n, so a force Fx carries Fy = Fx n_y / n_x.

@@ -17,12 +17,16 @@ class NoRubble:
         self.budget: ForcePairs = {}
         self.energy: dict[str, float] = {}
         self.momenta: dict[str, float] = {}
+        self.on_structure = np.zeros(6)
 
     def add(self, fragment: Fragment) -> HandOver:
         """Nothing becomes of it."""
         mass = float(fragment.mass.sum())
         self.cleared_mass += mass
         return HandOver(0, mass, 0.0, 0.0)
+
+    def set_structure(self, place: Array, velocity: Array) -> None:
+        """Nothing is there to meet the structure."""
 
     def sections_in_use(self) -> dict[int, float]:
         """None."""

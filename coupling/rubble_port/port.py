@@ -90,6 +90,15 @@ class RubblePort:
         """Turns a fragment into blocks where and as it moves now."""
         return self._arrivals.add(self.layer, fragment)
 
+    def set_structure(self, place: Array, velocity: Array) -> None:
+        """Where the structure is when the coming window begins, and how it moves; see `RubbleParticipant`."""
+        self.layer.set_structure(place, velocity)
+
+    @property
+    def on_structure(self) -> Array:
+        """Mean load of the blocks on the structure over the last window, with its moment (6,) [N], [N m]."""
+        return self.layer.wrench_on_structure
+
     def sections_in_use(self) -> dict[int, float]:
         """Sections that hold blocks or are next to one, and x of the rearmost block: where the sheet must be known."""
         keys = sorted({k + side for k in self.layer.sections_in_use() for side in (-1, 0, 1)})

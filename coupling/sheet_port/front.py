@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from coupling.contact import OverlapContact
-from coupling.interface import Array, ContactForces, IntArray, Structure
+from coupling.interface import Array, BoolArray, ContactForces, IntArray, Structure
 from coupling.sheet_port.crushed_edge import CrushedEdge
 from coupling.sheet_port.motion import Motion
 from lattice.contact import Lever, edge_displacement, lever_of
@@ -23,13 +23,27 @@ class Front:
         y = np.asarray(g.y0 + np.arange(g.ny) * g.d, np.float64)
         self.ice_y = y.copy()  #: middle of each column's ice [m]
         self.ice_y[[0, -1]] += 0.25 * g.d * np.array([1.0, -1.0])
-        normal = structure.normal(self.ice_y, np.full(g.ny, contact.touching_z))
-        self.meets = np.isfinite(normal[:, 0]) & (normal[:, 0] < 0.0)  #: columns in whose way the structure stands
-        with np.errstate(invalid="ignore", divide="ignore"):
-            tan = np.where(self.meets, np.abs(normal[:, 0] / normal[:, 2]), 1.0)
+        self._structure = structure
+        self.meets, tan = self._ahead(np.zeros(6))  #: columns in whose way the structure stands
         self.edge = CrushedEdge((g.nx, g.ny), g.d, ice.h, tan)
         self._crushed_before = 0.0  #: mass crushed off nodes that have left [kg]
         self.renew()
+
+    def _ahead(self, place: Array) -> tuple[BoolArray, Array]:
+        """Columns before the structure where it is displaced by ``place`` (6,), and the steepness of its face there."""
+        z = np.full(len(self.ice_y), self.contact.touching_z) - place[2]
+        normal = self._structure.normal(self.ice_y - place[1], z)
+        meets = np.isfinite(normal[:, 0]) & (normal[:, 0] < 0.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return meets, np.where(meets, np.abs(normal[:, 0] / normal[:, 2]), 1.0)
+
+    def stand(self, place: Array) -> None:
+        """The structure is displaced by ``place`` (6,) now: other columns may stand before it."""
+        meets, tan = self._ahead(place)
+        self.edge.tan = np.where(meets, tan, self.edge.tan)
+        if (meets != self.meets).any():
+            self.meets = meets
+            self.renew()
 
     def save(self) -> Memory:
         """Front, crushed edge and contact, for `lattice.memory.recall`."""

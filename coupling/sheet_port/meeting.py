@@ -58,6 +58,17 @@ class Meeting:
         self.load.force_q[forces.nodes, 0] = forces.force[:, 2]
         self._nodes, self._place = forces.nodes, self._motion.position(forces.nodes)
 
+    def save(self, others: Callable[[], None]) -> Callable[[], None]:
+        """The meeting between two windows, set back after the ``others`` of the sheet; see `Restore`."""
+        own, load = dict(vars(self)), (self.load.force_u.copy(), self.load.force_q.copy())
+
+        def back() -> None:
+            others()
+            vars(self).update(own)
+            self.load.force_u[:], self.load.force_q[:] = load
+
+        return back
+
     def power(self, window: float) -> float:
         """Mean power over a window of so many seconds that ends now, in the fixed frame [W]."""
         self.note()

@@ -17,6 +17,7 @@ from coupling.interface import (
     ContactForces,
     IntArray,
     Load,
+    Path,
     Restore,
     SheetEdge,
     SheetForces,
@@ -32,6 +33,7 @@ from coupling.sheet_port.front import Front
 from coupling.sheet_port.leaving import Leaving
 from coupling.sheet_port.meeting import Meeting
 from coupling.sheet_port.motion import Motion
+from coupling.sheet_port.moving import OnMoving
 from coupling.sheet_port.underside import Underside
 from coupling.sheet_port.view import view
 from coupling.sheet_port.watch import Watch
@@ -54,14 +56,16 @@ class SheetPort:
         columns_per_section: int = 1,
         contact: type[OverlapContact] = OverlapContact,
         loads: Sequence[Load] = (),
+        path: Path | None = None,
     ):
         """``velocity`` of the drift [m/s]; ``contact`` makes the contact of the edge from the ``law``.
 
-        ``loads`` act on the sheet beside structure and rubble, each under a name of its own.
+        ``loads`` act on the sheet beside structure and rubble, each under a name of its own; ``path`` is that of a
+        structure that moves.
         """
         ice = sheet.ice
         self.sheet, self.loads = sheet, tuple(loads)
-        self.contact = contact(structure, law, velocity, ice.h, ice.freeboard)
+        self.contact = contact(structure, law, velocity, ice.h, ice.freeboard, path)
         self.motion = Motion(sheet, velocity)
         self.front = Front(sheet, self.motion, structure, self.contact)
         self.underside = Underside(sheet, self.motion, self.front.edge, columns_per_section)
@@ -71,9 +75,11 @@ class SheetPort:
         self.power = 0.0
         self.meeting: Meeting | None = None  #: in lockstep
         self._leaving = Leaving()
-        sheet.energy.friction_of = partial(
-            friction_part, structure, law.friction, self.contact.face, self.contact.touching_z
-        )
+        self.moving = None if path is None else OnMoving(self.contact, path)
+        if path is not None:
+            sheet.window_by_window()
+        rests = partial(friction_part, structure, law.friction, self.contact.face, self.contact.touching_z)
+        sheet.energy.friction_of = rests if path is None else self.contact.friction_in
 
     # ---- one window -------------------------------------------------------------------------------------------
 
@@ -101,6 +107,8 @@ class SheetPort:
         t = t_ns / NS
         self._leaving.begin()
         self.motion.begin(t)
+        if self.moving is not None:
+            self.front.stand(self.moving.path.at(t))
         self.sheet.set_window(window_ns / NS)
         parts = self.sheet.parts
         try:
@@ -112,6 +120,8 @@ class SheetPort:
         self.motion.t = (t_ns + window_ns) / NS
         self.power = self._power(rubble, window_ns / NS)
         contact = self.front.forces(out)
+        if self.moving is not None:
+            self.moving.close(self.motion.t, window_ns / NS, contact, self.front.displacement())
         self.front.crush()
         hinges = self.sheet.hinges
         contact = replace(contact, hinged=hinges.hinged[contact.nodes])
@@ -126,7 +136,8 @@ class SheetPort:
             "staggering": r.applied.get(RUBBLE, (0.0, 0.0)),
         }
         others = {name: pair for name, pair in r.applied.items() if name != RUBBLE}
-        return SheetReport(load, self._leaving.late(self.motion.t), events, budget, others, contact, _hinged(contact))
+        left, wrench = self._leaving.late(self.motion.t), None if self.moving is None else self.moving.wrench
+        return SheetReport(load, left, events, budget, others, contact, _hinged(contact), wrench)
 
     def _release(self, nodes: IntArray) -> None:
         """A piece leaves the lattice, within the window."""
@@ -183,8 +194,10 @@ class SheetPort:
 
     def save(self) -> Restore:
         """All of the sheet between two windows."""
-        own = [m for thing in (self, self.motion, self.underside, self.watch) for m in remember(thing)]
-        return partial(recall, [*own, *self.front.save(), *self.sheet.save()])
+        things = (self, self.motion, self.underside, self.watch, self.moving, self._leaving)
+        own = [m for thing in things if thing is not None for m in remember(thing)]
+        back = partial(recall, [*own, *self.front.save(), *self.sheet.save()])
+        return back if self.meeting is None else self.meeting.save(back)
 
     # ---- what others see --------------------------------------------------------------------------------------
 
@@ -201,7 +214,7 @@ class SheetPort:
     @property
     def energy(self) -> dict[str, float]:
         """Energy of the sheet by term [J]."""
-        return energy_terms(self.sheet.energy, self.motion.velocity)
+        return energy_terms(self.sheet.energy, self.motion.velocity, self.moving)
 
     def edges(self, sections: Mapping[int, float]) -> dict[int, SheetEdge]:
         """The sheet's edge and underside in these sections, where they are and move now."""

@@ -206,6 +206,8 @@ def test_every_rule_can_be_broken(tmp_path):
         "duration_is_whole": ["scenario.duration='10.01 s'"],
         "frames_are_whole": ["recording.every='10 ms'"],
         "fields_are_drawn_or_read": ["ice.strength_field={}"],
+        "motion_has_its_keys": ["structure.motion.kind='modal'"],
+        "something_moves": ["drift.velocity='0 m/s'"],
     }
     assert set(changes) == {rule.__name__ for rule in RULES}
     file = tmp_path / "mine.toml"

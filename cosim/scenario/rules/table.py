@@ -7,12 +7,13 @@ from typing import Any
 
 from pydantic_core import PydanticCustomError
 
-from cosim.scenario.rules import ice, sheet, structure, times
+from cosim.scenario.rules import ice, moving, sheet, structure, times
 
 #: takes the model, or what stands for it; yields faults
 RULES: tuple[Callable[[Any], Iterator[PydanticCustomError]], ...] = (
     *ice.RULES,
     *sheet.RULES,
     *structure.RULES,
+    *moving.RULES,
     *times.RULES,
 )

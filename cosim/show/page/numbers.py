@@ -11,6 +11,7 @@ from cosim.analysis.budget import rows as budget_rows
 from cosim.analysis.moments import moments
 from cosim.analysis.run_data import RunData
 from cosim.show.scale import scale_of, significant
+from coupling.energy import MOVING
 from coupling.interface import PHASES
 
 STATISTICS = ("mean", "standard deviation", "half of the time below", "9 of 10 below", "99 of 100 below", "largest")
@@ -97,6 +98,7 @@ def balances(run: RunData) -> list[tuple[str, str, str]]:
     for name, (about, limit) in BALANCES.items():
         if name == "energy":
             work = np.abs(run.ledger.get("drift_work", np.empty(0)))
+            work = np.maximum(work, np.abs(run.ledger.get(MOVING, work)))
             residual = np.abs(run.ledger.get("energy_residual", np.empty(0)))
             if not len(work) or not len(residual) or not work[-1]:
                 continue

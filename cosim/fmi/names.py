@@ -1,0 +1,29 @@
+"""Variables with their units: motion of the structure into the ice, loads out of it; for a structure vice versa."""
+
+from __future__ import annotations
+
+from cosim.analysis.run_data import AXES, MOMENT_AXES, MOTION
+from coupling.interface import FREEDOMS, PHASES
+
+LOAD = (*AXES, *MOMENT_AXES)  #: of all phases, means over the step [N], [N m]
+BY_PHASE = tuple(f"{phase}_{name}" for phase in PHASES for name in LOAD)
+
+
+def unit_of(name: str) -> str:
+    """Of a variable: N, N.m, m, rad, m/s or rad/s, as FMI writes them."""
+    bare = name.removesuffix("_rate")
+    if bare in FREEDOMS:
+        return ("m" if FREEDOMS.index(bare) < 3 else "rad") + ("/s" if bare != name else "")
+    return "N.m" if name.split("_")[-1] in MOMENT_AXES else "N"
+
+
+def about(name: str) -> str:
+    """One line for the description of a variable."""
+    if name in MOTION:
+        what = "velocity" if name.endswith("_rate") else "displacement"
+        return f"{what} of the structure's waterline point, {name.removesuffix('_rate')}"
+    *phase, axis = name.split("_")
+    kind = "moment about the waterline point where it is" if axis in MOMENT_AXES else "force"
+    return (
+        f"{kind} of the ice on the structure along {axis[1]}, {phase[0] if phase else 'all phases'}; mean of the step"
+    )

@@ -1,0 +1,165 @@
+"""The ice as an FMU, and an FMU as the structure: bits, states, errors, validation by FMPy."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cosim.build import build
+from cosim.errors import InputError
+from cosim.fmi.ice import Ice
+from cosim.fmi.write import write_fmu
+from cosim.scenario.loading import load_scenario
+from coupling.interface import SimulationError
+
+fmpy = pytest.importorskip("fmpy")
+pytest.importorskip("pythonfmu")
+
+CASE = "van_vliet_2018_floe_55m_centre"
+SMALL = ("sheet.nodes=[14, 14]", "contact.strength='800 kPa'", "drift.velocity='0.4 m/s'", "scenario.duration='1.5 s'")
+SHEET = (*SMALL, "rubble.enabled=false", "fracture.longest_step='50 ms'")
+SOFT = ("structure.motion.kind='spring'", "structure.motion.surge.mass='1000 t'")
+SOFT += ("structure.motion.surge.stiffness='4 MN/m'", "structure.motion.surge.damping='40 kN*s/m'")
+
+
+def loads(*overrides):
+    s = build(load_scenario(CASE, [*SHEET, *overrides]))
+    return np.array([s.macro_step().load.sum(axis=0) for _ in range(30)])
+
+
+@pytest.fixture(scope="module")
+def rests():
+    return loads()
+
+
+@pytest.fixture(scope="module")
+def ice_fmu(tmp_path_factory):
+    out = tmp_path_factory.mktemp("fmu") / "ice.fmu"
+    before = list(sys.path)
+    write_fmu(load_scenario(CASE, list(SHEET)), out)
+    assert sys.path == before
+    assert "brash_ice" not in sys.modules
+    return out
+
+
+def test_fmpy_finds_nothing_wrong(ice_fmu):
+    from fmpy.validation import validate_fmu
+
+    assert validate_fmu(str(ice_fmu)) == []
+    about = fmpy.read_model_description(str(ice_fmu))
+    units = {v.name: v.unit for v in about.modelVariables}
+    assert (units["fx"], units["breaking_my"], units["surge"], units["pitch_rate"]) == ("N", "N.m", "m", "rad/s")
+    assert all(v.description for v in about.modelVariables)
+    assert about.defaultExperiment.stepSize == "0.05"
+    assert about.coSimulation.canGetAndSetFMUstate
+
+
+def test_it_gives_the_loads_of_a_run_twice_in_one_process(ice_fmu, rests):
+    for _ in range(2):
+        out = fmpy.simulate_fmu(str(ice_fmu), stop_time=1.5, step_size=0.05, output_interval=0.05, output=["fx", "fz"])
+        got = np.column_stack((out["fx"], out["fz"]))[1:]
+        assert np.abs(got - rests[:, ::2]).max() < 1e-9 * np.abs(rests).max()
+
+
+class Held:
+    """The ice FMU, step by step."""
+
+    def __init__(self, file):
+        from fmpy.fmi2 import FMU2Slave
+
+        about = fmpy.read_model_description(str(file))
+        self.number = {v.name: v.valueReference for v in about.modelVariables}
+        name = about.coSimulation.modelIdentifier
+        folder = fmpy.extract(str(file))
+        self.fmu = FMU2Slave(guid=about.guid, unzipDirectory=folder, modelIdentifier=name, instanceName="ice")
+        self.fmu.instantiate()
+        self.fmu.setupExperiment(startTime=0.0)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def set(self, **values):
+        self.fmu.setReal([self.number[n] for n in values], list(values.values()))
+
+    def get(self, *names):
+        return self.fmu.getReal([self.number[n] for n in names])
+
+
+def test_steps_states_and_what_is_refused(ice_fmu, rests):
+    from fmpy.fmi1 import FMICallException
+
+    ice = Held(ice_fmu)
+    for t, length in ((0.0, 0.03), (0.05, 0.05), (0.0, 2.0)):
+        with pytest.raises(FMICallException):
+            ice.fmu.doStep(t, length)
+    ice.fmu.doStep(0.0, 0.1)  # two windows: their mean
+    assert ice.get("fx")[0] == pytest.approx(rests[:2, 0].mean(), rel=1e-12)
+    state = ice.fmu.getFMUState()
+    ends = []
+    for _ in range(2):
+        ice.set(surge=0.01, surge_rate=0.2)
+        ice.fmu.doStep(0.1, 0.05)
+        ends.append(ice.get("fx", "breaking_my", "fz"))
+        ice.fmu.setFMUState(state)
+    assert ends[0] == ends[1]
+    assert abs(ends[0][0] - rests[2, 0]) > 1e-2 * rests[2, 0]  # twin: the motion is felt
+    ice.set(surge=float("nan"))
+    with pytest.raises(FMICallException):
+        ice.fmu.doStep(0.1, 0.05)
+    ice.set(surge=0.0, surge_rate=0.0)
+    ice.fmu.doStep(0.1, 0.05)
+    assert ice.get("fx")[0] == pytest.approx(rests[2, 0], rel=1e-12)
+
+
+def test_the_ice_says_what_is_wrong_with_a_step():
+    ice = Ice(load_scenario(CASE, list(SHEET)))
+    none = np.zeros(6)
+    with pytest.raises(SimulationError, match=r"a step of 0.03 s is no whole number of windows of 0.05 s"):
+        ice.step(0.0, 0.03, none, none)
+    with pytest.raises(SimulationError, match=r"a step from 1 s, but the ice is at 0 s"):
+        ice.step(1.0, 0.05, none, none)
+    with pytest.raises(SimulationError, match=r"the case ends at 1.5 s"):
+        ice.step(0.0, 5.0, none, none)
+
+
+@pytest.fixture(scope="module")
+def tower(tmp_path_factory):
+    """The FMU of `tower_fmu.py`, one that can go back and one that cannot."""
+    from pythonfmu import FmuBuilder
+
+    folder, before = tmp_path_factory.mktemp("tower"), list(sys.path)
+    script = Path(__file__).with_name("tower_fmu.py")
+    for name, back in (("back.fmu", True), ("forth.fmu", False)):
+        FmuBuilder.build_FMU(script, folder / name, [], None, None, canGetAndSetFMUstate=back)
+    sys.path[:] = before
+    return folder
+
+
+@pytest.mark.parametrize(("file", "near"), [("back.fmu", 1e-12), ("forth.fmu", 2e-2)])
+def test_an_fmu_is_the_structure(tower, file, near):
+    """As our own spring; without a state to go back to the ice expects it on a straight line."""
+    own = loads(*SOFT)
+    got = loads("structure.motion.kind='fmu'", f"structure.motion.file='{tower / file}'")
+    assert np.abs(got - own).max() < near * np.abs(own).max()
+
+
+def test_what_is_no_structure_is_refused(tower, ice_fmu, tmp_path):
+    wrong = tmp_path / "wrong.fmu"
+    wrong.write_bytes(b"PK no zip")
+    for file, more, says in (
+        (wrong, (), "cannot be read as an FMU"),
+        (ice_fmu, (), "none of the inputs fx"),
+        (tower / "forth.fmu", ("structure.motion.repeats=2",), "cannot get and set its state"),
+    ):
+        case = load_scenario(CASE, [*SHEET, "structure.motion.kind='fmu'", f"structure.motion.file='{file}'", *more])
+        with pytest.raises(InputError, match=says):
+            build(case)
+    with pytest.raises(InputError, match="comes from the other side"):
+        write_fmu(load_scenario(CASE, [*SHEET, *SOFT]), tmp_path / "ice.fmu")
+
+
+def test_the_command_writes_it(cosim, tmp_path):
+    out = tmp_path / "ice.fmu"
+    code, said, _ = cosim("fmu", CASE, "-o", str(out), "--set", SHEET[0])
+    assert (code, "steps are whole multiples of 0.05 s" in said) == (0, True)
+    assert out.read_bytes()[:2] == b"PK"
