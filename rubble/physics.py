@@ -77,8 +77,11 @@ class RubblePhysics:
 
     @property
     def pace(self) -> float:
-        """Times of this ice over those of ice of 3 m, by Froude's law: (h / g)^0.5 over its value there [-]."""
-        return sqrt(self.thickness / 3.0 * (9.81 / self.g))
+        """Times of this ice over those of ice of 3 m, by Froude's law: (h / g)^0.5 over its value there [-].
+
+        Where nothing weighs (g = 0) as at 9.81 m/s2.
+        """
+        return sqrt(self.thickness / 3.0 * (9.81 / (self.g or 9.81)))
 
     @property
     def afloat(self) -> float:

@@ -85,6 +85,9 @@ def froude_copy(scenario: Scenario, factor: Fraction) -> Copy:
     told = _whole_nanoseconds(table, scenario, factor)
     if scenario.model.rubble.friction_ice_ice == "rate-dependent":
         told.append("rubble.friction_ice_ice: rate-dependent friction knows a velocity and does not scale")
+    motion = scenario.model.structure.motion
+    if motion is not None and motion.file:
+        told.append(f"structure.motion.file = {motion.file}: what it holds is in SI and is not scaled")
     told += [f"{key} = {name}: its x and y are in metres and are not scaled" for key, name in _files(scenario)]
     head = f"# Froude copy of {scenario.name}: lengths by {factor}, times by its root, masses by its cube.\n\n"
     return Copy(head + to_toml(table), tuple(done), tuple(told))
