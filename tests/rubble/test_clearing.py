@@ -121,7 +121,8 @@ def way_round(y, x=-14.0):
     """Time [s] of a frictionless square disc from x to the axis: straight on to the cone, round it, on to its centre.
 
     At the angle a from the front the current drives it along the cone by quadratic drag on its front and on its side,
-    equal areas: (V - w sin a)^2 sin a = (w cos a)^2 cos a gives w = V sin^0.5 a / (sin^1.5 a + cos^1.5 a).
+    equal areas: (V - w sin a)^2 sin a = (w cos a)^2 cos a gives w = V sin^0.5 a / (sin^1.5 a + cos^1.5 a). This was
+    written down after the times had been seen: it checks the face that recedes under this drag.
     """
     a = np.linspace(np.arcsin(y / MEETS), np.pi / 2, 2001)
     s, c = np.sin(a), np.abs(np.cos(a))
