@@ -30,9 +30,8 @@ class Translation(Section):
     mass: Annotated[Mass, Limits("1 mg", "1e12 kg", "1200 t")]  #: that moves, with the water that moves along [kg]
     #: 0: it floats freely [N/m]
     stiffness: Annotated[TranslationalStiffnessOrZero, Limits("0 N/m", "1e24 N/m", "6 MN/m")] = 0.0
-    damping: Annotated[TranslationalDampingOrZero, Limits("0 N*s/m", "1e18 N*s/m", "50 kN*s/m")] = (
-        0.0  #: force per speed [N s/m]
-    )
+    #: force per speed [N s/m]
+    damping: Annotated[TranslationalDampingOrZero, Limits("0 N*s/m", "1e18 N*s/m", "50 kN*s/m")] = 0.0
 
 
 class Rotation(Section):
@@ -42,9 +41,8 @@ class Rotation(Section):
     inertia: Annotated[Inertia, Limits("1e-9 kg*m^2", "1e18 kg*m^2", "4e9 kg*m^2")]
     #: moment per radian [N m]
     stiffness: Annotated[RotationalStiffnessOrZero, Limits("0 N*m", "1e27 N*m", "20 GN*m")] = 0.0
-    damping: Annotated[RotationalDampingOrZero, Limits("0 N*m*s", "1e24 N*m*s", "100 MN*m*s")] = (
-        0.0  #: moment per rate [N m s]
-    )
+    #: moment per rate [N m s]
+    damping: Annotated[RotationalDampingOrZero, Limits("0 N*m*s", "1e24 N*m*s", "100 MN*m*s")] = 0.0
 
 
 class StructureMotion(Section):

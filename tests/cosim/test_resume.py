@@ -40,6 +40,13 @@ CASES = {
 LONG = {
     "explicit": (*CASES["explicit"], "scenario.duration='6 s'", "recording.checkpoint_every='1 s'"),
     "implicit": (*CASES["implicit"], "scenario.duration='5 s'", "recording.checkpoint_every='0.75 s'"),
+    "moving": (
+        *CASES["explicit"],
+        "scenario.duration='6 s'",
+        "recording.checkpoint_every='1 s'",
+        "structure.motion.kind='spring'",
+        "structure.motion.surge={mass='1200 t',stiffness='6 MN/m',damping='50 kN*s/m'}",
+    ),
     "waves": (*CASES["implicit"], "scenario.duration='4 s'", "fracture.propagation='dynamic'"),
     "iterated": (
         *CASES["implicit"],
