@@ -46,6 +46,8 @@ MAGIC = {
     ".mp4": b"\0\0\0",
     ".log": b"# cosim log",
     ".fmu": b"PK\x03\x04",
+    ".md": b"# Evidence of brash",
+    ".json": b'{\n  "evidence"',
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists
 GROWS = {

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cosim.analysis import cycles
+from cosim.analysis import cycles, levels
 from cosim.analysis.instants import Kinds, between, evenly, first_contact, first_event
 from cosim.analysis.peaks import at_peak
 from cosim.analysis.run_data import RunData
@@ -113,8 +113,14 @@ def rubble_volume(run: RunData) -> float | None:
 UNITS: dict[str, str] = {}
 QUANTITIES: dict[str, Callable[..., float | None]] = {}
 _OF_UNIT: dict[str, tuple[Callable[..., float | None], ...]] = {
-    "N": (event_load, peak_load, level_between_peaks, cycles.largest_load, cycles.encounter_load, cycles.mean_load),
-    "s": (event_time, peak_time, build_up_time, load_period, cycles.encounter_time, cycles.cycle_period),
+    "N": (
+        *(event_load, peak_load, level_between_peaks, cycles.largest_load, cycles.encounter_load, cycles.mean_load),
+        *(levels.load_mean, levels.load_quantile, levels.peak_quantile, levels.trough_load),
+    ),
+    "s": (
+        *(event_time, peak_time, build_up_time, load_period, cycles.encounter_time, cycles.cycle_period),
+        levels.peak_interval,
+    ),
     "m": (cycles.piece_length,),
     "m^2": (cycles.piece_area,),
     "m^3": (rubble_volume,),

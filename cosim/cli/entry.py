@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cosim.cli import authoring, coupling, recordings, scenarios, simulate, sweeping
+from cosim.cli import authoring, coupling, evidencing, recordings, scenarios, simulate, sweeping
 from cosim.errors import explain
 from cosim.plain import one_line
 from cosim.signals import StoppedError, handled
@@ -32,6 +32,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "run": simulate.run,
     "resume": simulate.resume,
     "sweep": sweeping.sweep,
+    "evidence": evidencing.evidence,
     "replay": recordings.replay,
     "compare": recordings.compare,
     "baseline": scenarios.baseline,
