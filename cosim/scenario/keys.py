@@ -173,7 +173,8 @@ def default_of(field: FieldInfo) -> str | None:
     unit = unit_of(field)
     if unit is not None:
         return f"{field.default:g} {unit.si}"
-    return repr(field.default).replace("'", '"').replace("True", "true").replace("False", "false")
+    default = list(field.default) if isinstance(field.default, tuple) else field.default
+    return repr(default).replace("'", '"').replace("True", "true").replace("False", "false")
 
 
 def example_of(field: FieldInfo) -> str:
