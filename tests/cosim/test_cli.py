@@ -109,7 +109,7 @@ def fake_run(monkeypatch, synthetic):
     """Replace the simulation by synthetic frames; ``fail_at`` raises in that window, ``signal_at`` sends signals."""
 
     def install(fail_at=None, error=None, signal_at=(-1,)):
-        def run_scenario(scenario, observers, stop=None):
+        def run_scenario(scenario, observers, at_end=None, checkpoints=None):
             for observer in observers:
                 observer.on_start(synthetic.run_info(scenario))
             for k, frame in enumerate(synthetic.frames(scenario)):

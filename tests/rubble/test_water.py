@@ -9,6 +9,7 @@ from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Slab, turned
 from rubble.plates import empty, orient_all
+from rubble.pressure import FAR
 from rubble.prism import inertia, strips, wetted_edges
 from rubble.water import Hulls, Water, plate_forces
 
@@ -40,7 +41,7 @@ def add_box(
 
 def force_on(edges, state, form=0.0, skin=0.0):
     """Force x, z, moment from x towards z and power of drag on a plate of one piece at x, z, angle and their rates."""
-    water = Water(RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0, 0.0)
+    water = Water(RHO_G, PHYSICS.rho_w / 2, form, skin, 0.0, 0.0, 0.0, 0.0, FAR * PHYSICS.thickness)
     x, z, angle, v_x, v_z, omega = state
     plates = empty(1)
     plates.position[0], plates.quaternion[0] = (x, 0.0, z), turned(angle)
@@ -218,7 +219,9 @@ def test_water_lifts_a_plate_that_is_turned_about_all_axes():
         np.zeros((1, 3)),
     )
     forces, lowest = np.zeros((1, 3, 6)), np.zeros(1)
-    plate_forces(plates, hulls, Water(RHO_G, 500.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), forces, lowest)
+    plate_forces(
+        plates, hulls, Water(RHO_G, 500.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, FAR * PHYSICS.thickness), forces, lowest
+    )
     lift = RHO_G * 10.0
     assert forces[0, 0] == pytest.approx([0.0, 0.0, lift, 0.0, 0.0, 0.0], abs=1e-9 * lift)
 
