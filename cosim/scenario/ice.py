@@ -175,7 +175,7 @@ class Fracture(Section):
     crack_friction: Friction = 0.3  #: of the faces of a crack on each other; for closing cracks
     #: tensile strength of a layer where it is known [Pa]; by default found by simulating a beam test: `ice.beam_test`,
     #: or a beam of usual proportions that breaks at `ice.flexural_strength`; for closing cracks
-    layer_strength: Annotated[Stress, Limits("1 kPa", "1 TPa", "400 kPa")] = None
+    layer_strength: Annotated[Stress, Limits("100 Pa", "1 TPa", "400 kPa")] = None
     #: longest step of the sheet while nothing fails and no rubble touches it; for open cracks. Default four windows [s]
     longest_step: Annotated[Time, Limits("1 us", "100 s", "50 ms")] = None
 

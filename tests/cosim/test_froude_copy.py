@@ -81,7 +81,7 @@ def test_another_root_keeps_whole_nanoseconds_and_is_told(tmp_path):
     case = load_scenario("first_cone")
     assert small.substeps == case.substeps
     assert small.duration_ns / small.window_ns == case.duration_ns / case.window_ns
-    assert small.model.scenario.duration == pytest.approx(20.0 / math.sqrt(30.0), rel=2e-6)
+    assert small.model.scenario.duration == pytest.approx(case.model.scenario.duration / math.sqrt(30.0), rel=2e-6)
 
 
 def test_profiles_and_currents_scale():
