@@ -75,7 +75,7 @@ def test_the_basins_3000_m3_lift_with_4_7_mn(mu):
     assert found.force == pytest.approx(4.7e6, rel=0.03)
 
 
-@pytest.mark.parametrize("porosity", [0.2, 0.3])
+@pytest.mark.parametrize("porosity", [pytest.param(0.2, marks=pytest.mark.slow), 0.3])
 def test_a_pile_has_the_porosity_that_is_asked_for(porosity):
     """Within 0.03, whatever the width of the sections: blocks are narrower than they are."""
     layer, found = pile(1500.0, range(-2, 3), mu="rate-dependent", porosity=porosity)
@@ -143,6 +143,7 @@ def test_the_angle_of_a_flank_is_that_of_the_wedge(angle):
     assert np.isnan(flank([], 0.1))
 
 
+@pytest.mark.slow
 def test_a_pile_in_shallow_water_grounds_and_spreads():
     """Three quarters as deep as it would be: nothing below the bed, a flatter pile, the sheet lifted as ever."""
     _, deep = pile(450.0, (0,))
