@@ -85,6 +85,7 @@ def printed(path):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_a_run_is_shown_while_it_is_recorded(synthetic, tmp_path):
     """By a process of its own, as of `cosim run --follow`, here into a file: curves, ice, sections, log; it ends."""
     path, out = tmp_path / "run.mcap", tmp_path / "run.rrd"

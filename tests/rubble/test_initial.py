@@ -50,6 +50,7 @@ def check(found, volume):
     assert 0.0 < found.slope < np.radians(75)
 
 
+@pytest.mark.slow
 def test_a_pile_lifts_the_sheet_with_its_buoyant_weight():
     layer, found = pile(1200.0, (0, 1))
     check(found, 1200.0)
