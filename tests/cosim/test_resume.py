@@ -45,7 +45,7 @@ LONG = {
         "scenario.duration='6 s'",
         "recording.checkpoint_every='1 s'",
         "structure.motion.kind='spring'",
-        "structure.motion.surge={mass='1200 t',stiffness='6 MN/m',damping='50 kN*s/m'}",
+        "structure.motion.surge={mass='1200 t',stiffness='600 MN/m',damping='500 kN*s/m'}",
     ),
     "waves": (*CASES["implicit"], "scenario.duration='4 s'", "fracture.propagation='dynamic'"),
     "iterated": (
