@@ -129,8 +129,7 @@ class OverlapContact:
 
     def _direction(self, normal: Array, sin: Array, rows: IntArray) -> Array:
         """Normal plus friction, (k, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
-        up = np.array([0.0, 0.0, 1.0])
-        up_slope = (up - normal[..., 2:] * normal) / sin[..., None]
+        up_slope = _up_slope(normal, sin)
         if self.path is None:
             return normal + self._law.friction * self.face * up_slope
         slides = self._slides(up_slope, rows)
@@ -157,10 +156,15 @@ class OverlapContact:
         rows = np.flatnonzero(force[: len(self.nodes)].any(axis=1))
         mu = np.full(len(force), self._law.friction)
         _, normal = self.overlap(self._t, y[: len(self.nodes)])
-        sin = np.sqrt(1.0 - normal[rows, :, 2] ** 2)
-        up_slope = (np.array([0.0, 0.0, 1.0]) - normal[rows, :, 2:] * normal[rows]) / sin[..., None]
+        normal = normal[rows]
+        up_slope = _up_slope(normal, np.sqrt(1.0 - normal[..., 2] ** 2))
         mu[rows] *= self._slides(up_slope, rows).mean(axis=1)
         return friction_at(self._s, mu, self.face, height, force)
+
+
+def _up_slope(normal: Array, sin: Array) -> Array:
+    """Direction up the face (k, SAMPLES, 3) that looks along ``normal`` and stands at an angle of this ``sin``."""
+    return np.asarray((np.array([0.0, 0.0, 1.0]) - normal[..., 2:] * normal) / sin[..., None])
 
 
 class CrushingContact(OverlapContact):

@@ -11,8 +11,8 @@ import numpy as np
 
 from rubble.compiled import compiled
 from rubble.gather import Scene
-from rubble.plates import times
 from rubble.rows import BED, Rows, go_on, set_arms, set_way
+from rubble.sides import outline_of
 from rubble.slots import BED_SLOT
 
 
@@ -30,13 +30,9 @@ def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: 
         last += 1
     for s in range(slices.piece.shape[0]):
         k, start = slices.plate[s], c
-        r, b, p = plates.rotation[k], slices.anchor[s], plates.position[k]
-        h = max(np.hypot(r[0, 0], r[2, 0]), 1e-12)
-        cos, sin = r[0, 0] / h, r[2, 0] / h
-        ox, _, oz = times(r, b[0], b[1], b[2])
-        for i in range(slices.sides[s]):
-            x, z = slices.corners[s, i, 0], slices.corners[s, i, 1]
-            depth = scene.bed - (p[2] + oz + sin * x + cos * z)
+        corners = outline_of(scene, s)
+        for i in range(corners.shape[0]):
+            depth = scene.bed - corners[i, 1]
             if depth < 0.0:
                 continue
             if c >= rows.point.shape[0]:
@@ -44,7 +40,7 @@ def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: 
             point = rows.point[c]
             point.a, point.b, point.edge, point.kind = plates.moved.shape[0] - 1, k, -1, BED
             point.slot_a, point.slot_b, point.feature, point.depth = BED_SLOT, s, i, depth
-            point.x, point.y, point.z = p[0] + ox + cos * x - sin * z, slices.y[s], scene.bed - 0.5 * depth
+            point.x, point.y, point.z = corners[i, 0], slices.y[s], scene.bed - 0.5 * depth
             set_way(rows.way[c, 0], 0.0, 0.0, 1.0)
             set_way(rows.way[c, 1], -1.0, 0.0, 0.0)
             set_way(rows.way[c, 2], 0.0, -1.0, 0.0)

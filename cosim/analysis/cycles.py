@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cosim.analysis.instants import Kinds, between, encounters, evenly, events_of, first_contact, largest
+from cosim.analysis.instants import Kinds, between, encounters, events_of, first_contact, largest, peaks_in, within
 from cosim.analysis.run_data import RunData
 from coupling.interface import NS, Array
 
@@ -17,11 +17,7 @@ def largest_load(
     run: RunData, component: str = "fx", phase: str | None = None, begin: float = 0.0, end: float | None = None
 ) -> float | None:
     """Largest load of the windows that end within ``begin`` to ``end``, both from first contact [s] [N]."""
-    start = first_contact(run)
-    if start is None:
-        return None
-    t = run.t - start
-    chosen = (t > begin) & (t <= (np.inf if end is None else end) + 1e-9)
+    chosen = within(run, begin, end)
     return _largest(run.component(component, phase)[chosen]) if chosen.any() else None
 
 
@@ -78,21 +74,12 @@ def cycle_period(
     A peak stands out by ``prominence`` of the record's largest load, after a running mean over ``smooth`` [s]. None
     with fewer than three peaks.
     """
-    from scipy.ndimage import uniform_filter1d  # these take a second to load, and most commands do not need them
-    from scipy.signal import find_peaks
-
     begin, end = between(run, after, before)
     if begin is None:
         return None
     chosen = (run.t_ns > begin) & (run.t_ns <= end)
-    t_ns, load = run.t_ns[chosen], run.component(component)[chosen]
-    if len(load) < 3 or not load.max() > 0:
-        return None
-    even_ns, even = evenly(t_ns, load)
-    step = int(even_ns[1] - even_ns[0])
-    even = uniform_filter1d(even, max(1, round(smooth * NS / step)), mode="nearest")
-    peaks, _ = find_peaks(even, prominence=prominence * load.max())
-    return float(np.median(np.diff(peaks))) * step / NS if len(peaks) > 2 else None
+    peaks, _, step = peaks_in(run.t_ns[chosen], run.component(component)[chosen], prominence, smooth)
+    return float(np.median(np.diff(peaks))) * step if len(peaks) > 2 else None
 
 
 def piece_length(run: RunData, event: Kinds = "circumferential") -> float | None:

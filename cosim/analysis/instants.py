@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cosim.analysis.run_data import RunData
-from coupling.interface import NS, Array, Event, IntArray
+from coupling.interface import NS, Array, BoolArray, Event, IntArray
 
 Kinds = str | Sequence[str]
 DROP = 0.5  #: share of an encounter's largest load below which the load has dropped, and from which it builds up
@@ -37,6 +37,31 @@ def evenly(t_ns: IntArray, load: Array) -> tuple[IntArray, Array]:
     """Times at even distances, the shortest that occurs [ns], and the load there."""
     even = np.arange(t_ns[0], t_ns[-1] + 1, np.diff(t_ns).min())
     return even, np.interp(even, t_ns, load)
+
+
+def within(run: RunData, begin: float, end: float | None) -> BoolArray:
+    """(n,) whether a window ends within ``begin`` to ``end``, both from first contact [s]; no window without one."""
+    start = first_contact(run)
+    if start is None:
+        return np.zeros(len(run.t_ns), bool)
+    t = run.t - start
+    return np.asarray((t > begin) & (t <= (np.inf if end is None else end) + 1e-9))
+
+
+def peaks_in(t_ns: IntArray, load: Array, prominence: float, smooth: float) -> tuple[IntArray, Array, float]:
+    """Places of the peaks of a load (n,), the load at even distances [N], and that distance [s].
+
+    A peak stands out by ``prominence`` of the largest load, after a running mean over ``smooth`` [s].
+    """
+    from scipy.ndimage import uniform_filter1d  # these take a second to load, and most commands do not need them
+    from scipy.signal import find_peaks
+
+    if len(load) < 3 or not load.max() > 0:
+        return np.zeros(0, np.int64), np.zeros(0), 0.0
+    even_ns, even = evenly(t_ns, load)
+    step = int(even_ns[1] - even_ns[0])
+    even = uniform_filter1d(even, max(1, round(smooth * NS / step)), mode="nearest")
+    return find_peaks(even, prominence=prominence * load.max())[0], even, step / NS
 
 
 def events_of(run: RunData, event: Kinds) -> list[Event]:

@@ -10,16 +10,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from cosim.analysis.instants import evenly, first_contact
+from cosim.analysis.instants import peaks_in, within
 from cosim.analysis.run_data import RunData
-from coupling.interface import NS, Array, IntArray
+from coupling.interface import Array, IntArray
 
 
 def load_mean(
     run: RunData, component: str = "fx", phase: str | None = None, begin: float = 0.0, end: float | None = None
 ) -> float | None:
     """Mean over ``begin`` to ``end`` [N]; None if the run is not as long as ``begin``."""
-    chosen = _within(run, begin, end)
+    chosen = within(run, begin, end)
     if not chosen.any():
         return None
     length = (run.t_ns - run.begin_ns)[chosen]
@@ -35,7 +35,7 @@ def load_quantile(
     end: float | None = None,
 ) -> float | None:
     """The load [N] below which it is for ``share`` of the time from ``begin`` to ``end``."""
-    chosen = _within(run, begin, end)
+    chosen = within(run, begin, end)
     if not chosen.any():
         return None
     load, length = run.component(component, phase)[chosen], (run.t_ns - run.begin_ns)[chosen]
@@ -49,20 +49,10 @@ def peaks_of(
 ) -> tuple[IntArray, Array, float]:
     """Places of the peaks, the load (n,) [N] at even distances, and that distance [s].
 
-    As `cosim.analysis.cycles.cycle_period`: a peak stands out by ``prominence`` of the largest load after ``begin``,
-    after a running mean over ``smooth`` [s].
+    As `instants.peaks_in`, of the load after ``begin``.
     """
-    from scipy.ndimage import uniform_filter1d  # these take a second to load, and most commands do not need them
-    from scipy.signal import find_peaks
-
-    chosen = _within(run, begin, None)
-    load = run.component(component)[chosen]
-    if len(load) < 3 or not load.max() > 0:
-        return np.zeros(0, np.int64), np.zeros(0), 0.0
-    even_ns, even = evenly(run.t_ns[chosen], load)
-    step = float(even_ns[1] - even_ns[0]) / NS
-    even = uniform_filter1d(even, max(1, round(smooth / step)), mode="nearest")
-    return find_peaks(even, prominence=prominence * load.max())[0], even, step
+    chosen = within(run, begin, None)
+    return peaks_in(run.t_ns[chosen], run.component(component)[chosen], prominence, smooth)
 
 
 def peak_quantile(
@@ -98,12 +88,3 @@ def trough_load(
     places, load, _ = peaks_of(run, component, begin, prominence, smooth)
     lowest = [load[a:b].min() for a, b in pairwise(places)]
     return float(np.median(lowest)) if lowest else None
-
-
-def _within(run: RunData, begin: float, end: float | None) -> Array:
-    """(n,) whether a window ends within a span from first contact."""
-    start = first_contact(run)
-    if start is None:
-        return np.zeros(len(run.t_ns), bool)
-    t = run.t - start
-    return np.asarray((t > begin) & (t <= (np.inf if end is None else end) + 1e-9))

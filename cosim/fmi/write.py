@@ -16,7 +16,6 @@ from typing import Any
 
 from cosim.errors import InputError
 from cosim.scenario.scenario import Scenario
-from cosim.scenario.variation import FIELDS
 
 SCRIPT = Path(__file__).with_name("brash_ice.py")
 
@@ -52,8 +51,8 @@ def _tidy(folder: str) -> Iterator[None]:
 
 def _files(scenario: Scenario) -> list[Path]:
     """Files that the scenario names, which lie beside it."""
-    named = [field.file for f in FIELDS if (field := getattr(scenario.ice, f)) is not None] + [scenario.sheet.broken]
-    for name in filter(None, named):
+    names = [name for _, name in scenario.named_files]
+    for name in names:
         if Path(name).name != name:
             raise InputError(f"{name}: a file of an FMU must lie beside the scenario; move it there")
-    return [(scenario.folder or Path()) / name for name in named if name]
+    return [(scenario.folder or Path()) / name for name in names]

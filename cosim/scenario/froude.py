@@ -19,7 +19,6 @@ from cosim.scenario.errors import ScenarioError
 from cosim.scenario.scenario import Scenario
 from cosim.scenario.text import complete, to_toml
 from cosim.scenario.units import Unit, dimensions, split
-from cosim.scenario.variation import FIELDS
 
 DIGITS = Context(prec=50)
 NS = 10**9
@@ -88,15 +87,9 @@ def froude_copy(scenario: Scenario, factor: Fraction) -> Copy:
     motion = scenario.model.structure.motion
     if motion is not None and motion.file:
         told.append(f"structure.motion.file = {motion.file}: what it holds is in SI and is not scaled")
-    told += [f"{key} = {name}: its x and y are in metres and are not scaled" for key, name in _files(scenario)]
+    told += [f"{key} = {name}: its x and y are in metres and are not scaled" for key, name in scenario.named_files]
     head = f"# Froude copy of {scenario.name}: lengths by {factor}, times by its root, masses by its cube.\n\n"
     return Copy(head + to_toml(table), tuple(done), tuple(told))
-
-
-def _files(scenario: Scenario) -> list[tuple[str, str]]:
-    """Keys that name files of places on the sheet, and these files."""
-    named = [(f"ice.{f}.file", field.file) for f in FIELDS if (field := getattr(scenario.ice, f)) is not None]
-    return [(key, name) for key, name in (*named, ("sheet.broken", scenario.sheet.broken)) if name]
 
 
 def _scaled(

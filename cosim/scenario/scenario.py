@@ -9,6 +9,7 @@ from typing import Any
 from cosim.analysis.sustained import averaging_time
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.text import complete, to_toml
+from cosim.scenario.variation import FIELDS
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,12 @@ class Scenario:
         """Sub-steps of the rubble in one time window."""
         substep: float = self.model.rubble.substep
         return self.window_ns // round(substep * 1e9)
+
+    @property
+    def named_files(self) -> list[tuple[str, str]]:
+        """Keys that name files of places on the sheet, and these files."""
+        named = [(f"ice.{f}.file", field.file) for f in FIELDS if (field := getattr(self.ice, f)) is not None]
+        return [(key, name) for key, name in (*named, ("sheet.broken", self.sheet.broken)) if name]
 
     def resolved_toml(self) -> str:
         """The scenario as it ran: overrides applied, every default written out. Loads to the same model."""
