@@ -6,7 +6,7 @@ them has found its value. The floe then just touches the structure.
 
 from __future__ import annotations
 
-import numpy as np
+from math import inf
 
 from coupling.interface import SheetForces, SimulationError
 from coupling.rubble_port import RubblePort
@@ -15,15 +15,12 @@ from coupling.sheet_port import SheetPort
 
 CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
 ROUNDS = 20
-FLATTEST = np.radians(25.0)  #: flank of settled rubble: how far back the sheet must be known at first
 
 
 def lay_rubble(sheet: SheetPort, rubble: RubblePort, asked: Initial) -> None:
     """Settles rubble, with the sheet in equilibrium with it."""
     sections = front_sections(rubble)
-    area = asked.volume / (1.0 - asked.porosity) / (len(sections) * rubble.layer.pitch)
-    rear = rubble.structure.foremost_x(0.0) - float(np.sqrt(2.0 * area / np.tan(FLATTEST)))
-    pile = fill(rubble, asked, sheet.edges(dict.fromkeys(sections, rear)))
+    pile = fill(rubble, asked, sheet.edges(dict.fromkeys(sections, -inf)))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):
         sheet.rest_under(rubble.forces_on_sheet())
