@@ -5,7 +5,7 @@
     run = cosim.run("first_cone", set={"ice.thickness": "40 cm"})
     run.loads["fx"].max()
 
-`run` and `open` give a `Run`, `sweep` a table of variants, `scenarios` the names that there are.
+`run`, `resume` and `open` give a `Run`, `sweep` a table of variants, `scenarios` the names that there are.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cosim.api.calls import open, run, scenarios, sweep
+    from cosim.api.calls import open, resume, run, scenarios, sweep
     from cosim.api.run import Run
     from cosim.errors import FailedError, InputError
 
-__all__ = ["FailedError", "InputError", "Run", "open", "run", "scenarios", "sweep"]
+__all__ = ["FailedError", "InputError", "Run", "open", "resume", "run", "scenarios", "sweep"]
 
 _HOME = {"Run": "cosim.api.run", "FailedError": "cosim.errors", "InputError": "cosim.errors"}
 

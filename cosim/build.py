@@ -45,10 +45,11 @@ from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS
 
 
-def build(scenario: Scenario, motion: Motion | None = None) -> Scheduler:
+def build(scenario: Scenario, motion: Motion | None = None, *, begins: bool = True) -> Scheduler:
     """All participants of a run, at rest, with the floe touching the structure.
 
-    ``motion`` is that of the structure, if it is not to be the one of the scenario.
+    ``motion`` is that of the structure, if it is not to be the one of the scenario. A run that does not begin, but goes
+    on from a checkpoint, has its rubble there: none is laid for it.
     """
     structure = build_structure(scenario)
     ice = build_ice(scenario)
@@ -68,7 +69,7 @@ def build(scenario: Scenario, motion: Motion | None = None) -> Scheduler:
     ledger = Ledger(port.initial_mass if sheet.present.all() else port.mass)
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
-        if scenario.rubble.initial_volume > 0.0:
+        if begins and scenario.rubble.initial_volume > 0.0:
             r = scenario.rubble
             lengths = (float(r.initial_lengths[0]), float(r.initial_lengths[1]))
             lay_rubble(port, rubble, Initial(r.initial_volume, r.initial_porosity, lengths, scenario.scenario.seed))

@@ -183,7 +183,7 @@ def run_scenario(
     result, checkpoints = RunResult(scenario), checkpoints or Checkpoints(scenario)
     with threadpool_limits(1):  # linear algebra adds in the same order on every machine: same scenario, same bits
         began = time.perf_counter()
-        scheduler = build(scenario)
+        scheduler = build(scenario, begins=checkpoints.kept is None)
         info = run_info(scenario)
         if seen := checkpoints.begin(info, scheduler):
             result.go_on(seen)

@@ -1,4 +1,4 @@
-"""Calls: simulate a scenario, open a recording, run variants, list the scenarios."""
+"""Calls: simulate a scenario, go on with a run, open a recording, run variants, list the scenarios."""
 
 from __future__ import annotations
 
@@ -45,18 +45,38 @@ def run(
     """
     from cosim.recording.writer import Recorder
     from cosim.scenario.loading import load_scenario
-    from cosim.show.progress import ProgressBar
-    from cosim.show.talk import Talk
     from cosim.watched import simulate
 
     loaded = load_scenario(scenario, overrides_of(set))
     kept = tempfile.TemporaryDirectory(prefix="cosim-") if output is None else None
     path = Path(kept.name) / f"{loaded.name}.mcap" if kept is not None else Path(str(output))
-    watching: list[Observer] = [*observers, Recorder(path, force=force)]
-    if progress:
-        watching.append(ProgressBar(Talk()))
-    simulate(loaded, watching)
+    simulate(loaded, _watching(observers, Recorder(path, force=force), progress))
     return Run(path, _kept=kept)
+
+
+def resume(recording: str | Path, *, progress: bool = False, observers: Iterable[Observer] = ()) -> Run:
+    """Go on with an interrupted run from its last checkpoint, with the bits that it would have had.
+
+    The run has kept checkpoints if ``recording.checkpoint_every`` is set, as by ``set`` of `run`.
+
+    Args:
+        recording: of the run; its checkpoint lies beside it.
+        progress: show a bar on standard error.
+        observers: see every window from the checkpoint on.
+
+    Raises:
+        InputError: there is no checkpoint, or it is damaged or of another version.
+        coupling.interface.SimulationError: as of `run`.
+
+    """
+    from cosim.checkpoint.interrupted import interrupted
+    from cosim.recording.writer import Recorder
+    from cosim.watched import simulate
+
+    found, path = interrupted(Path(recording)), Path(recording)
+    recorder = Recorder(path, since=found.since)
+    simulate(found.scenario, _watching(observers, recorder, progress), kept=found.kept)
+    return Run(path)
 
 
 def open(path: str | Path) -> Run:
@@ -120,6 +140,14 @@ def scenarios() -> builtins.list[str]:
 def overrides_of(settings: Settings | None) -> builtins.list[str]:
     """As the command line takes them, ``a.b=v``."""
     return [f"{key}={_text(value)}" for key, value in (settings or {}).items()]
+
+
+def _watching(observers: Iterable[Observer], recorder: Observer, progress: bool) -> builtins.list[Observer]:
+    """All who see a run."""
+    from cosim.show.progress import ProgressBar
+    from cosim.show.talk import Talk
+
+    return [*observers, recorder, *([ProgressBar(Talk())] if progress else [])]
 
 
 def _nothing(_row: dict[str, Any]) -> None:

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 
-from cosim import build
+from cosim import build, resume
 from cosim.build import run_info
 from cosim.checkpoint import file
 from cosim.checkpoint.graph import GIVEN
@@ -81,6 +81,21 @@ class Tell:
 
     def on_frame(self, frame):
         os.write(self.pipe, b".")
+
+    def on_close(self):
+        pass
+
+
+class Counts:
+    """Observer that counts windows."""
+
+    windows = 0
+
+    def on_start(self, run_info):
+        pass
+
+    def on_frame(self, frame):
+        self.windows += 1
 
     def on_close(self):
         pass
@@ -249,6 +264,17 @@ def broken_off(tmp_path):
     with pytest.raises(RuntimeError):
         simulate(case(SMALL), [Recorder(path), Fail()])
     return path
+
+
+def test_a_run_goes_on_from_python(broken_off, tmp_path):
+    reference = whole(SMALL, tmp_path / "whole.mcap")
+    seen = Counts()
+    run = resume(broken_off, observers=[seen])
+    assert broken_off.read_bytes() == reference[0]
+    assert not file.place_of(broken_off).exists()
+    assert 0 < seen.windows < len(run.loads)
+    with pytest.raises(InputError, match="beside it: it has reached its end"):
+        resume(broken_off)
 
 
 def test_what_cannot_go_on_says_so_in_one_line(broken_off, cosim, tmp_path):
