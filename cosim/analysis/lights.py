@@ -91,6 +91,24 @@ def time_after_peak(run: RunData) -> float | None:
     return (float(run.t[-1]) - last) / run.averaging
 
 
+def growth(run: RunData) -> float | None:
+    """Mean of the last quarter of the time since first contact over that of the quarter before, the larger of Fx and Fz.
+
+    Where ice still spreads along a long face, or rubble piles up, the loads of a run are those of its beginning.
+    """
+    touched = np.flatnonzero(run.component("f") > 0.0)
+    if not len(touched) or len(run.t_ns) - touched[0] < 20:
+        return None
+    quarters = np.array_split(np.arange(touched[0], len(run.t_ns)), 4)[2:]
+    length = (run.t_ns - run.begin_ns).astype(float)
+    found = []
+    for axis in ("fx", "fz"):
+        before, last = (abs(float(np.average(run.component(axis)[q], weights=length[q]))) for q in quarters)
+        if before > 0.0:
+            found.append(last / before)
+    return max(found, default=None)
+
+
 def run_length(run: RunData) -> float | None:
     """Simulated time over the averaging time: below 1 the means reach to before the run, where they count no load."""
     if not len(run.t_ns) or not run.averaging:
@@ -148,6 +166,14 @@ LIGHTS = (
         True,
         "run goes on for {:.1f} averaging times after the peak",
         "the largest load stands at the end of the run (lengthen scenario.duration)",
+    ),
+    Light(
+        "growth",
+        growth,
+        1.5,
+        False,
+        "mean load of the last quarter {:.2f} of that of the third",
+        "the mean load of the last quarter is {:.1f} times that of the third: it still grows (lengthen scenario.duration)",
     ),
     Light(
         "run_length",

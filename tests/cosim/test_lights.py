@@ -60,6 +60,17 @@ def test_staggering_is_that_at_the_peak():
     assert lights.staggering_share(alone) == pytest.approx(0.0, abs=1e-9)  # the peak, of 5.5 s, has none
 
 
+def test_a_load_that_still_grows_says_so():
+    """Of a load that grows as time from 4 s on, the last two of its four quarters of 4 s have means of 10 and 14."""
+    grows = run(fx=np.where(T > 4.0, 1e5 * (T - 4.0), 0.0))
+    assert lights.growth(grows) == pytest.approx(14.0 / 10.0, rel=0.01)
+    assert not any("still grows" in text for text in lights.trust(grows)["because"])
+    faster = lights.trust(run(fx=np.where(T > 4.0, 1e3 * (T - 4.0) ** 2, 0.0)))
+    assert any("is 1.9 times that of the third: it still grows" in text for text in faster["because"])
+    assert lights.growth(run(fx=np.full(N, 2e6))) == pytest.approx(1.0, rel=1e-12)
+    assert lights.growth(run(fx=np.zeros(N))) is None
+
+
 def test_a_run_shorter_than_its_averaging_time_says_so():
     """A mean of a steady 2 MN over 30 s, of which the run has 20, is 1.33 MN: two thirds of the load."""
     short = run(fx=np.full(N, 2e6), averaging_s="30.0")
