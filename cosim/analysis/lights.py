@@ -92,7 +92,7 @@ def time_after_peak(run: RunData) -> float | None:
 
 
 def growth(run: RunData) -> float | None:
-    """Mean of the last quarter of the time since first contact over that of the quarter before, the larger of Fx and Fz.
+    """Mean load of the last quarter of the time since first contact over that of the third; larger of Fx and Fz.
 
     Where ice still spreads along a long face, or rubble piles up, the loads of a run are those of its beginning.
     """
@@ -173,7 +173,8 @@ LIGHTS = (
         1.5,
         False,
         "mean load of the last quarter {:.2f} of that of the third",
-        "the mean load of the last quarter is {:.1f} times that of the third: it still grows (lengthen scenario.duration)",
+        "the mean load of the last quarter is {:.1f} times that of the third: it still grows "
+        "(lengthen scenario.duration)",
     ),
     Light(
         "run_length",
