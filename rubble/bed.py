@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from rubble.compiled import compiled
+from rubble.corners import bounds, first_of, go_on_from
 from rubble.gather import Scene
-from rubble.rows import BED, Rows, go_on, set_arms, set_way
+from rubble.rows import BED, Rows, set_arms, set_way
 from rubble.sides import outline_of
 from rubble.slots import BED_SLOT
 
@@ -20,14 +21,11 @@ from rubble.slots import BED_SLOT
 def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
     """Adds a row for each corner of a slice below the bed; returns the number of rows, -1 if there is no room.
 
-    ``old`` has ``before`` rows; those of the bed stand behind those of banks, in the order of slices and corners.
-    ``cut``: slices are new.
+    ``old`` has ``before`` rows. ``cut``: slices are new.
     """
     if not np.isfinite(scene.bed):
         return found
-    plates, slices, last, c = scene.plates, scene.slices, 0, found
-    while last < before and old.point[last].kind != BED:
-        last += 1
+    plates, slices, last, c = scene.plates, scene.slices, first_of(old, before, BED_SLOT), found
     for s in range(slices.piece.shape[0]):
         k, start = slices.plate[s], c
         corners = outline_of(scene, s)
@@ -45,31 +43,7 @@ def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: 
             set_way(rows.way[c, 1], -1.0, 0.0, 0.0)
             set_way(rows.way[c, 2], 0.0, -1.0, 0.0)
             set_arms(rows, c, plates, scene.edges)
-            while last < before and old.point[last].kind == BED and _earlier(old, last, s, i):
-                last += 1
-            same = last < before and old.point[last].kind == BED
-            same = same and old.point[last].slot_b == s and old.point[last].feature == i
-            go_on(rows, c, old, last if same else -1, 0.0, cut)
+            last = go_on_from(rows, c, old, last, before, cut)
             c += 1
-        _bounds(scene, rows, start, c)
+        bounds(scene, rows, start, c)
     return c
-
-
-@compiled(nogil=True)
-def _earlier(old: Rows, c: int, s: int, i: int) -> bool:
-    p = old.point[c]
-    earlier: bool = p.slot_b < s or (p.slot_b == s and p.feature < i)
-    return earlier
-
-
-@compiled(nogil=True)
-def _bounds(scene: Scene, rows: Rows, start: int, end: int) -> None:
-    """What the contacts of a slice carry before they crush: strength times width times length, shared by them."""
-    low, high, length = np.inf, -np.inf, scene.shortest
-    for c in range(start, end):
-        point = rows.point[c]
-        low, high = min(low, point.x), max(high, point.x)
-        length = max(length, 2.0 * point.depth, high - low)
-    for c in range(start, end):
-        width = min(scene.pitch, scene.widths[rows.point[c].slot_b])
-        rows.point[c].most = scene.strength * width * length / (end - start)

@@ -15,12 +15,11 @@ from rubble.edges import Edges, deeper_on_sheet
 from rubble.moving import Moving, aside, from_axes, turned
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, short
-from rubble.rows import ICE, SHEET, STRUCTURE, Rows, go_on, set_arms, set_way
+from rubble.rows import ICE, SHEET, STEEPEST, STRUCTURE, Rows, go_on, set_arms, set_normal
 from rubble.slices import Pieces, Slices, strayed
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
 SAME_FACE = 1.0 - 1e-6  #: cosine from which a contact's normal is that of a face
-STEEPEST = 1e3  #: |n_y / n_x| of the structure beyond which its face counts as parallel to the section
 
 
 class Sections(NamedTuple):
@@ -55,6 +54,15 @@ class Scene(NamedTuple):
     cut: int  #: number of the sub-step in which the slices are new
     bed: float  #: height of the sea bed, -inf without one [m]
     moving: Moving  #: the structure
+    body: Array  #: (k, 2) r and z of its closed generator if it is a body of revolution, else (0, 2), see `round` [m]
+
+
+@compiled(nogil=True)
+def in_three(scene: Scene, s: int) -> bool:
+    """Whether a slice meets the structure in three dimensions: its piece is seen by no other plane."""
+    i = scene.slices.piece[s]
+    alone: bool = scene.body.shape[0] > 0 and scene.pieces.range[i, 0] == scene.pieces.range[i, 1]
+    return alone
 
 
 @compiled(nogil=True)
@@ -79,6 +87,8 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
                 continue  # outlines that just fall together have no direction in which they could push
             if a == UNKNOWN or b == UNKNOWN:
                 return -2
+            if min(a, b) == STRUCTURE_SLOT and in_three(scene, max(a, b)):
+                continue
             if count + points > rows.point.shape[0]:
                 return -3
             start, contact = count, integer(arbiter + layout.contacts)
@@ -128,12 +138,7 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
         point.a = scene.slices.plate[a]
         n_y = _lean(scene, a, b, nx, nz)
         depth += n_y * (strayed(scene.plates, scene.slices, a) - strayed(scene.plates, scene.slices, b))
-    p = 1.0 / np.sqrt(1.0 + n_y * n_y)
-    ux, uy, uz = p * nx, p * n_y, p * nz
-    set_way(rows.way[c, 0], ux, uy, uz)
-    set_way(rows.way[c, 1], -nz, 0.0, nx)
-    set_way(rows.way[c, 2], uy * nx, -uz * nz - ux * nx, uy * nz)
-    point.depth = p * depth
+    point.depth = depth * set_normal(rows, c, nx, n_y, nz)
 
 
 @compiled(nogil=True)

@@ -24,15 +24,19 @@ from rubble.physics import RubblePhysics
 from rubble.piece import Plate, Slab, Start, one_piece
 from rubble.prism import Prism
 from rubble.readings import Readings
+from rubble.round import closed
 from rubble.section import Section
 from rubble.sections import SectionTable
 from rubble.sheet import MEETS, SheetBody, SheetMotion
 from rubble.store import Store
-from rubble.window import Runner
+from rubble.window import NO_BODY, Runner
 
 
 class RubbleLayer(Readings):
-    """Plates in sections ``pitch`` apart; ``solids(y)`` gives the structure in the plane y."""
+    """Plates in sections ``pitch`` apart; ``solids(y)`` gives the structure in the plane y.
+
+    ``generator`` (k, 2): heights, ascending, and radii of the structure if it is a body of revolution about the z axis.
+    """
 
     def __init__(
         self,
@@ -41,6 +45,7 @@ class RubbleLayer(Readings):
         *,
         origin: float = 0.0,
         solids: Solids = open_water,
+        generator: Array | None = None,
         domain: Domain | None = None,
         threads: int = 1,
     ) -> None:
@@ -50,7 +55,7 @@ class RubbleLayer(Readings):
         self.domain, self.threads = domain or Domain(), threads
         self.store = Store(physics, pitch)
         self.table_of_sections = SectionTable(physics, pitch, origin, solids)
-        self.runner = Runner(physics)
+        self.runner = Runner(physics, NO_BODY if generator is None else closed(generator))
         self.joints = no_joints()
         self.cleared: list[int] = []  #: numbers of the plates that have left, in order
         self.gone = Lost()  #: what they took along

@@ -23,6 +23,7 @@ KINDS = ("ice", "structure", "sheet", "bed")  #: of those that lose energy
 GIVES_WAY = 20.0  #: time in which ice of 3 m that has met deep in other ice comes apart, see `RubblePhysics.pace` [s]
 CRUSHES = 1.0 - 1e-9  #: share of the greatest impulse from which a contact crushes
 SAME_WAY = 0.99  #: cosine between the normals of a point before and after a sub-step, below which it is another one
+STEEPEST = 1e3  #: |n_y| over the rest of a normal beyond which a face counts as parallel to the section
 HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 
@@ -106,6 +107,21 @@ def go_on(rows: Rows, c: int, old: Rows, at: int, owed: float, cut: bool) -> Non
 def set_way(way: Record, x: float, y: float, z: float) -> None:
     """A direction."""
     way.x, way.y, way.z = x, y, z
+
+
+@compiled(nogil=True)
+def set_normal(rows: Rows, c: int, x: float, y: float, z: float) -> float:
+    """Directions of row c from a normal of any length: it, in the section's plane across it, across both.
+
+    Returns the inverse of its length.
+    """
+    h = max(np.hypot(x, z), abs(y) / STEEPEST)
+    inverse: float = 1.0 / np.hypot(h, y)
+    ux, uy, uz, px, pz = x * inverse, y * inverse, z * inverse, x / h, z / h
+    set_way(rows.way[c, 0], ux, uy, uz)
+    set_way(rows.way[c, 1], -pz, 0.0, px)
+    set_way(rows.way[c, 2], uy * px, -uz * pz - ux * px, uy * pz)
+    return inverse
 
 
 @compiled(nogil=True)

@@ -10,7 +10,8 @@ from rubble.arrays import IntArray
 from rubble.compiled import compiled
 
 STRUCTURE_SLOT, SHEET_SLOT, UNKNOWN = -1, -2, -3  #: of the bodies that are no slices; slices count from 0
-BED_SLOT = -6  #: of the sea bed, which is no body of pymunk; joints have -4, slices that are gone -5
+#: of the sea bed, and of a body of revolution, which are no bodies of pymunk; joints have -4, slices that are gone -5
+BED_SLOT, ROUND_SLOT = -6, -7
 _SPREAD = 0x1E3779B97F4A7C15  #: addresses at regular distances do not fall together in the hash table
 
 

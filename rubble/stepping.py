@@ -17,6 +17,7 @@ from rubble.gather import Scene, gather
 from rubble.joints import Joints, joint_rows
 from rubble.pairs import find_pairs
 from rubble.plates import Plates, move_all
+from rubble.round import round_rows
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
 from rubble.solver import solve
@@ -74,6 +75,8 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0], cut)
         if contacts >= 0:
             contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0], cut)
+        if contacts >= 0:
+            contacts = round_rows(scene, rows, old, contacts, sums.counted[0])
         if contacts >= 0:
             contacts = bed_rows(scene, rows, old, contacts, sums.counted[0], cut and not window.planar)
         found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1

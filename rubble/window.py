@@ -26,6 +26,7 @@ from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
 
+NO_BODY = np.zeros((0, 2))  #: the structure is none of revolution
 BIAS = 0.9**60.0  #: share of an overlap of ice of 3 m that is left after a second: Chipmunk's
 
 
@@ -43,8 +44,9 @@ class Run(NamedTuple):
 class Runner:
     """Runs windows; keeps what goes on from one to the next: rows of the last sub-step, pressure, books."""
 
-    def __init__(self, physics: RubblePhysics) -> None:
+    def __init__(self, physics: RubblePhysics, body: Array) -> None:
         self.physics, self.water = physics, water_of(physics)
+        self.body = body  #: the structure as a body of revolution, see `gather.Scene`
         #: how edges yield, by the number of their section; None: sheet and rubble go in lockstep
         self.yields: Yields | None = ({}, np.zeros((2, 0, 0)))
         self.books, self.water_impulse = np.zeros(1, BOOKS), np.zeros(1, WATER_IMPULSE)
@@ -165,6 +167,7 @@ class Runner:
             cut=int(self._counted[1]) + 1,
             bed=self.bed,
             moving=self.moving,
+            body=NO_BODY if self.planar else self.body,
         )
 
     def _surface(self) -> Surface:

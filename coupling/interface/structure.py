@@ -81,6 +81,10 @@ class Structure(Protocol):
         """
         ...
 
+    def generator(self, z_lo: float, z_hi: float) -> Array | None:
+        """Heights, ascending, and radii (k, 2) between two heights of a body of revolution; None: it is none [m]."""
+        ...
+
     def bearing(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
         """(a, b) with n_y / n_x = a + b y / x of the face at points on it, front or rear.
 

@@ -75,7 +75,15 @@ class RubblePort:
 
             return faceted(convex_parts(*structure.section(y, bottom, top, tolerance)), bearing)
 
-        self.layer = RubbleLayer(physics, pitch, origin=origin, solids=solids, domain=domain, threads=threads)
+        self.layer = RubbleLayer(
+            physics,
+            pitch,
+            origin=origin,
+            solids=solids,
+            generator=structure.generator(bottom, top),
+            domain=domain,
+            threads=threads,
+        )
         self.physics = physics
         self.lockstep = False  #: windows are met step by step (`begin`, `meet`, `end`)
         self.structure = structure

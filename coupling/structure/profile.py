@@ -93,6 +93,10 @@ class Profiled:
         """Whether the face at the waterline bends ice downwards: it widens upwards."""
         return bool(self.profile.slope(np.zeros(1))[0] > 0.0)
 
+    def generator(self, z_lo: float, z_hi: float) -> Array | None:  # noqa: ARG002 - of one that is turned
+        """None: what has a profile is not yet a body of revolution."""
+        return None
+
     def normal_z(self, z: Array) -> Array:
         """n_z of the face at heights z."""
         slope = self.profile.slope(z)

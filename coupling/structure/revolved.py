@@ -93,6 +93,11 @@ class Revolved(Profiled):
         front = polyline(points)
         return front, front * np.array([-1.0, 1.0])
 
+    def generator(self, z_lo: float, z_hi: float) -> Array:
+        """Its profile between the heights."""
+        points = [(a, r0 + k * (a - z0), b, r0 + k * (b - z0)) for z0, r0, k, a, b in self.profile.pieces(z_lo, z_hi)]
+        return np.array([point[:2] for point in points] + [points[-1][2:]])
+
     def bearing(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
         """(0, 1): the normal passes through the axis."""
         shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))

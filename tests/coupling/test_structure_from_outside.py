@@ -41,6 +41,9 @@ class ObliqueSlope:
         front = np.column_stack((self.face_x(y, z), z))
         return front, np.column_stack((np.full(2, front[:, 0].max() + 100.0), z))
 
+    def generator(self, z_lo, z_hi):
+        return None
+
     def bearing(self, x, y, z):
         return np.full(np.shape(x), -np.tan(BETA)), np.zeros(np.shape(x))
 

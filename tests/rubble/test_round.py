@@ -1,0 +1,85 @@
+"""Pieces meet a body of revolution in three dimensions: depths, points and normals by sampling, and a flank passed."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from rubble.layer import RubbleLayer
+from rubble.physics import RubblePhysics
+from rubble.piece import Slab
+from rubble.round import _deepest, _spot, closed, depth_at
+from tests.rubble.cone_scene import WIDTH, H, cone_cut, rectangle
+
+GENERATOR = np.array([(-20.0, 5.0), (-10.0, 5.0), (5.0, 20.0)])  #: of `cone_scene.cone_cut`
+BODY = closed(GENERATOR)
+STILL = RubblePhysics(rho_i=846.0, rho_w=846.0, g=1e-9, form_drag=0.0, skin_drag=0.0, thickness=H, mu_structure=0.0)
+
+
+def radius(z):
+    return np.interp(z, *GENERATOR.T)
+
+
+def sampled(rho, z):
+    """Distance to the surface by brute force."""
+    a = np.concatenate([np.column_stack(np.linspace(p, q, 20001).T) for p, q in itertools.pairwise(BODY)])
+    return float(np.hypot(a[:, 0] - rho, a[:, 1] - z).min())
+
+
+@pytest.mark.parametrize(
+    ("rho", "z"), [(14.0, 0.0), (10.0, -4.0), (4.0, -15.0), (4.9, -9.0), (18.0, 4.5), (1.0, -19.5)]
+)
+def test_depth_is_the_distance_to_the_surface(rho, z):
+    depth, n_rho, n_z = depth_at(BODY, rho, z)
+    assert depth == pytest.approx(sampled(rho, z), rel=1e-4)
+    assert np.hypot(n_rho, n_z) == pytest.approx(1.0, rel=1e-12)
+    assert depth_at(BODY, rho + 1.001 * depth * n_rho, z + 1.001 * depth * n_z)[0] < 1e-3 * depth  # out that way
+
+
+@pytest.mark.parametrize(("rho", "z"), [(15.1, 0.0), (5.1, -15.0), (3.0, 5.1), (3.0, -20.1)])
+def test_outside_there_is_no_depth(rho, z):
+    assert depth_at(BODY, rho, z)[0] < 0.0
+
+
+def test_an_edge_stands_deepest_where_sampling_finds_it():
+    """Edges across the flank, level and tilted; a corner is the deepest where nothing between is.
+
+    Not so deep that another part of the surface is nearer than the one through which they have come.
+    """
+    random, between = np.random.default_rng(12), 0
+    for _ in range(1000):
+        p, q = random.uniform([-16.0, 4.0, -8.0], [16.0, 13.0, 3.0], (2, 3))
+        found = _deepest(BODY, _spot(BODY, *p), _spot(BODY, *q))
+        s = np.linspace(0.0, 1.0, 501)[:, None]
+        depths = [depth_at(BODY, np.hypot(x, y), z)[0] for x, y, z in p + s * (q - p)]
+        if 0.0 < max(depths) < 1.0:
+            assert found.depth == pytest.approx(max(depths), abs=2e-3)
+            between += 0 < int(np.argmax(depths)) < 500
+    assert between > 50
+
+
+def passing(generator):
+    """A block that is carried along the flank of the cone, 11 m to the side; depths of its corners in the cone."""
+    layer = RubbleLayer(STILL, 2.0 * WIDTH, solids=cone_cut, generator=generator)
+    outline, depths = rectangle(-18.5, -3.2, -14.0, -0.2), []
+    layer.add_block(1, Slab(outline, np.array([-18.5, -14.0]), np.array([2.0 * WIDTH]), 846.0), (1.0, 0.0), y=7.0)
+    plate = layer.store.list[0]
+    layer.store.take(plate)
+    plate.thrust[:3] = plate.mass * np.array([0.2, 0.0, 0.2])  # against the cone, and up
+    layer.store.add(plate)
+    while plate.position[0] < -2.0 and layer.time < 60.0:
+        layer.advance(10)
+        corners = plate.outline
+        y = plate.position[1]
+        depths.append(max(depth_at(BODY, np.hypot(x, y), z)[0] for x, z in corners))
+    return np.array(depths), layer
+
+
+def test_a_block_that_passes_the_flank_stays_outside_the_cone():
+    """In its section's plane alone it would stand metres inside when it comes to the next one."""
+    depths, layer = passing(GENERATOR)
+    assert depths.max() < 0.01 * H
+    assert layer.store.list[0].position[1] > 3.0 * WIDTH + 1.0  # the next section has it
+    assert layer.store.list[0].position[0] > -2.0
+    wrong = passing(None)[0]
+    assert wrong.max() > 0.1 * H
