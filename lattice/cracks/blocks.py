@@ -1,13 +1,14 @@
 """`LANES` layered cells at a time, side by side in vectors: what their nodes do, how they lean, and their forces.
 
 What a block needs of its nodes, and what it gives back, lies in the lines of one flat array at a constant distance:
-only then can the compiler prove that they do not overlap. Its cells are the same lines of ``Cracks.linear``.
+only then can the compiler prove that they do not overlap. The cells' own lines of ``Cracks.linear`` are copied there.
 """
 
 from __future__ import annotations
 
 from lattice.compiled import compiled
 from lattice.cracks.cells import (
+    BLOCK,
     COUPLING,
     FACE,
     FAR,
@@ -30,9 +31,17 @@ from lattice.grid import Array, IntArray
 
 L = LANES
 #: lines of the room: displacement and velocity of nodes 0 to 3, component after component, forces on them alike;
-#: strain from slopes before and now, its forces across the sheet, energy, and what else a cell has to say
-Y, V, F, OLD, NEW, PULL, GAINED, SAYS = (LANES * line for line in (0, 20, 40, 60, 63, 66, 68, 69))
-LOOK = 70 * LANES  #: length of the room
+#: strain from slopes before and now, its forces across the sheet, energy, what else a cell has to say, and its lines
+Y, V, F, OLD, NEW, PULL, GAINED, SAYS, CELL = (LANES * line for line in (0, 20, 40, 60, 63, 66, 68, 69, 70))
+LOOK = CELL + BLOCK  #: length of the room
+
+
+@compiled(nogil=True)
+def fetch_cells(first: int, linear: Array, room: Array) -> None:
+    """The lines of the cells from ``first`` on into the room."""
+    lines = linear[first * (BLOCK // LANES) :]
+    for n in range(BLOCK):
+        room[CELL + n] = lines[n]
 
 
 @compiled(nogil=True)
@@ -87,7 +96,7 @@ def elongations_in(at: int, half: float, room: Array) -> Edges:
 
 
 @compiled(nogil=True)
-def lean_block(q: float, alpha: float, ago: float, linear: Array, room: Array) -> None:
+def lean_block(q: float, alpha: float, ago: float, room: Array) -> None:
     """New slopes at y - alpha v and what they do; the energy is that of ``ago`` [s], as in `lean.lean_row`."""
     for i in range(LANES):
         (y, _), (v, _) = strain_in(Y + i, q, room), strain_in(V + i, q, room)
@@ -96,12 +105,12 @@ def lean_block(q: float, alpha: float, ago: float, linear: Array, room: Array) -
         s_x, s_y = s_x - alpha * t_x, s_y - alpha * t_y
         g_x, g_y, g_s = 0.5 * s_x * s_x, 0.5 * s_y * s_y, s_x * s_y
         d_x, d_y, d_s = g_x - room[OLD + i], g_y - room[OLD + L + i], g_s - room[OLD + 2 * L + i]
-        o_x, o_y, o_s = offsets(OFFSET, i, linear)
-        a_x, a_y, a_s = times(MEMBRANE, i, y.n + g_x, y.t + g_y, y.g + g_s, linear)
-        b_x, b_y, b_s = times(COUPLING, i, y.kn, y.kt, y.kg, linear)
-        m_x, m_y, m_s = times(MEMBRANE, i, v.n, v.t, v.g, linear)
-        u_x, u_y, u_s = times(COUPLING, i, v.kn, v.kt, v.kg, linear)
-        c_x, c_y, c_s = times(MEMBRANE, i, d_x, d_y, d_s, linear)
+        o_x, o_y, o_s = offsets(OFFSET, CELL + i, room)
+        a_x, a_y, a_s = times(MEMBRANE, CELL + i, y.n + g_x, y.t + g_y, y.g + g_s, room)
+        b_x, b_y, b_s = times(COUPLING, CELL + i, y.kn, y.kt, y.kg, room)
+        m_x, m_y, m_s = times(MEMBRANE, CELL + i, v.n, v.t, v.g, room)
+        u_x, u_y, u_s = times(COUPLING, CELL + i, v.kn, v.kt, v.kg, room)
+        c_x, c_y, c_s = times(MEMBRANE, CELL + i, d_x, d_y, d_s, room)
         N_x, N_y, N_s = o_x + a_x + b_x, o_y + a_y + b_y, o_s + a_s + b_s
         r_x, r_y, r_s = m_x + u_x, m_y + u_y, m_s + u_s
         gained = d_x * (N_x - ago * r_x - 0.5 * c_x) + d_y * (N_y - ago * r_y - 0.5 * c_y)
@@ -112,7 +121,7 @@ def lean_block(q: float, alpha: float, ago: float, linear: Array, room: Array) -
 
 
 @compiled(nogil=True)
-def moved(q: float, linear: Array, room: Array) -> int:
+def moved(q: float, room: Array) -> int:
     """How many cells' faces have been strained so far since the last evaluation that the law must be asked anew.
 
     By how much more than that is left in the room.
@@ -120,9 +129,9 @@ def moved(q: float, linear: Array, room: Array) -> int:
     count = 0
     for i in range(LANES):
         y, _ = strain_in(Y + i, q, room)
-        s_x, s_y, s_s = offsets(SEEN, i, linear)
-        k_x, k_y, k_s = offsets(SEEN_TURN, i, linear)
-        half, far = linear[FACE + i], linear[FAR + i]
+        s_x, s_y, s_s = offsets(SEEN, CELL + i, room)
+        k_x, k_y, k_s = offsets(SEEN_TURN, CELL + i, room)
+        half, far = room[CELL + FACE + i], room[CELL + FAR + i]
         a = abs(y.n + room[NEW + i] - s_x) + half * abs(y.kn - k_x)
         c = abs(y.t + room[NEW + L + i] - s_y) + half * abs(y.kt - k_y)
         g = abs(y.g + room[NEW + 2 * L + i] - s_s) + half * abs(y.kg - k_s)
@@ -134,15 +143,15 @@ def moved(q: float, linear: Array, room: Array) -> int:
 
 
 @compiled(nogil=True)
-def force_block(d: float, linear: Array, room: Array) -> None:
+def force_block(d: float, room: Array) -> None:
     """Forces of the cells on their nodes at Y and the strains NEW from slopes."""
     q, f = 0.5 / d, 0.5 * d
     for i in range(LANES):
         e, h = strain_in(Y + i, q, room)
         e = Strain(e.n + room[NEW + i], e.t + room[NEW + L + i], e.g + room[NEW + 2 * L + i], e.kn, e.kt, e.kg)
-        N1, N2, N3, M1, M2, M3 = resultants(i, e, linear)
-        Q0, Q1, Q2, Q3 = edge_forces(i, elongations_in(Y + i, f, room), linear)
-        H, R = linear[SKEW + i], linear[SKEW_TURN + i]
+        N1, N2, N3, M1, M2, M3 = resultants(CELL + i, e, room)
+        Q0, Q1, Q2, Q3 = edge_forces(CELL + i, elongations_in(Y + i, f, room), room)
+        H, R = room[CELL + SKEW + i], room[CELL + SKEW_TURN + i]
         hx, hy, tx, ty = H * h.x, H * h.y, R * h.tx, R * h.ty
         x, y, w = F + 4 * U_X * L + i, F + 4 * U_Y * L + i, F + 4 * W * L + i
         a, b = F + 4 * PHI_X * L + i, F + 4 * PHI_Y * L + i
@@ -159,15 +168,17 @@ def force_block(d: float, linear: Array, room: Array) -> None:
 
 
 @compiled(nogil=True)
-def power_block(d: float, linear: Array, room: Array) -> None:
+def power_block(d: float, room: Array) -> None:
     """What each cell's tangent does at V in the motion Y, over the same units of both: y . K v into the room."""
     q, half = 0.5 / d, 0.5 * d
     for i in range(LANES):
         (e, g), (r, h) = strain_in(Y + i, q, room), strain_in(V + i, q, room)
-        N1, N2, N3, M1, M2, M3 = forces(i, r, linear)
+        N1, N2, N3, M1, M2, M3 = forces(CELL + i, r, room)
         area = N1 * e.n + N2 * e.t + N3 * e.g + M1 * e.kn + M2 * e.kt + M3 * e.kg
-        area += linear[SKEW + i] * (g.x * h.x + g.y * h.y) + linear[SKEW_TURN + i] * (g.tx * h.tx + g.ty * h.ty)
+        area += room[CELL + SKEW + i] * (g.x * h.x + g.y * h.y) + room[CELL + SKEW_TURN + i] * (
+            g.tx * h.tx + g.ty * h.ty
+        )
         long, more = elongations_in(Y + i, half, room), elongations_in(V + i, half, room)
-        edges = linear[STIFF + i] * long[0] * more[0] + linear[STIFF + L + i] * long[1] * more[1]
-        edges += linear[STIFF + 2 * L + i] * long[2] * more[2] + linear[STIFF + 3 * L + i] * long[3] * more[3]
+        edges = room[CELL + STIFF + i] * long[0] * more[0] + room[CELL + STIFF + L + i] * long[1] * more[1]
+        edges += room[CELL + STIFF + 2 * L + i] * long[2] * more[2] + room[CELL + STIFF + 3 * L + i] * long[3] * more[3]
         room[SAYS + i] = d * d * area + edges

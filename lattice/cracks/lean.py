@@ -42,29 +42,34 @@ def membrane_force(x: float, y: float, s: float, S: Membrane) -> Membrane:
 
 
 @compiled(inline="always")
-def plane_strain(b: int, my: int, q: float, y: Array) -> tuple[float, float, float, float, float]:
-    """Membrane strain and slopes of the cell at b."""
-    (xx, xy, _), (yx, yy, _) = gradients(b, my, q, y[U_X]), gradients(b, my, q, y[U_Y])
-    s_x, s_y, _ = gradients(b, my, q, y[W])
-    return xx, yy, xy + yx, s_x, s_y
+def slopes(c: int, i: int, j: int, q: float, y: Array) -> tuple[float, float]:
+    """Along x and y, of a component of y (5, rows, my) in cell (i, j)."""
+    A, B, C, D = y[c, i, j], y[c, i + 1, j], y[c, i, j + 1], y[c, i + 1, j + 1]
+    return (B - A + D - C) * q, (C - A + D - B) * q
+
+
+@compiled(inline="always")
+def membrane_strain(i: int, j: int, q: float, y: Array) -> Membrane:
+    """Of the displacements in the plane alone, in cell (i, j)."""
+    (xx, xy), (yx, yy) = slopes(U_X, i, j, q, y), slopes(U_Y, i, j, q, y)
+    return xx, yy, xy + yx
 
 
 @compiled(nogil=True, error_model="numpy")
-def lean_row(start: int, nodes: Nodes, intact: Array, layered: Layered) -> None:
-    """New slopes of the elastic cells of a row that begins at ``start``, into ``OnNodes.rows``.
+def lean_row(i: int, motion: Motion, pace: tuple[float, float], intact: Array, layered: Layered) -> None:
+    """New slopes of the elastic cells of row i, into ``OnNodes.rows``; ``pace`` is alpha and the sub-step [s].
 
     The energy that they gain is that of the strain half a sub-step ago, where leapfrog has a potential that is linear
     in the displacements. It is added to what the rows before have.
     """
-    my, q, lean, rows, alpha = nodes.my, 0.5 / layered.plate.d, layered.lean, layered.nodes.rows, nodes.alpha
-    S, ago = membrane_stiffness(layered), nodes.alpha + 0.5 * nodes.dt
-    for j in range(my - LANES):
-        b = start + j
-        on = intact[b + my + 1]
-        y_x, y_y, y_s, s_x, s_y = plane_strain(b, my, q, nodes.y)
-        v_x, v_y, v_s, t_x, t_y = plane_strain(b, my, q, nodes.v)
+    (y, v), (alpha, dt), q, rows = motion, pace, 0.5 / layered.plate.d, layered.nodes.rows
+    S, ago, was = membrane_stiffness(layered), alpha + 0.5 * dt, layered.lean.strain.reshape(3, y.shape[1], y.shape[2])
+    for j in range(y.shape[2] - LANES):
+        on = intact[i + 1, j + 1]
+        (y_x, y_y, y_s), (v_x, v_y, v_s) = membrane_strain(i, j, q, y), membrane_strain(i, j, q, v)
+        (s_x, s_y), (t_x, t_y) = slopes(W, i, j, q, y), slopes(W, i, j, q, v)
         s_x, s_y = s_x - alpha * t_x, s_y - alpha * t_y
-        o_x, o_y, o_s = lean.strain[0, b], lean.strain[1, b], lean.strain[2, b]
+        o_x, o_y, o_s = was[0, i, j], was[1, i, j], was[2, i, j]
         g_x = 0.5 * s_x * s_x if on > 0.0 else o_x
         g_y = 0.5 * s_y * s_y if on > 0.0 else o_y
         g_s = s_x * s_y if on > 0.0 else o_s
@@ -90,15 +95,17 @@ def copy(line: int, rows: Array, to: Array) -> None:
 def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> float:
     """New slopes of elastic cells, ``intact`` (places,) as `Intact.plane`; the energy gained, over d^2 [J/m2]."""
     my, lean, rows, gained = nodes.my, layered.lean, layered.nodes.rows, 0.0
-    n = my - LANES
+    high, n = intact.shape[0] // my, my - LANES
+    motion, plane = Motion(nodes.y.reshape(5, high, my), nodes.v.reshape(5, high, my)), intact.reshape(high, my)
     rows[GAIN : GAIN + n] = 0.0
-    for start in range(0, intact.shape[0] - my, my):
-        lean_row(start, nodes, intact, layered)
-        for i in range(3):
-            copy(G_X + i * LINE, rows, lean.strain[i, start : start + n])
-            copy(T_X + i * LINE, rows, lean.stress[i, start : start + n])
-        for i in range(2):
-            copy(P_X + i * LINE, rows, lean.pull[i, start : start + n])
+    for i in range(high - 1):
+        lean_row(i, motion, (nodes.alpha, nodes.dt), plane, layered)
+        start = i * my
+        for c in range(3):
+            copy(G_X + c * LINE, rows, lean.strain[c, start : start + n])
+            copy(T_X + c * LINE, rows, lean.stress[c, start : start + n])
+        for c in range(2):
+            copy(P_X + c * LINE, rows, lean.pull[c, start : start + n])
     for j in range(n):
         gained += rows[GAIN + j]
     return gained

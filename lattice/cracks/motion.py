@@ -17,13 +17,13 @@ from lattice.cracks.blocks import (
     Y,
     add_forces,
     fetch,
+    fetch_cells,
     force_block,
     lean_block,
     moved,
     power_block,
 )
 from lattice.cracks.cells import (
-    BLOCK,
     FAR,
     MOVED,
     SEEN,
@@ -123,18 +123,20 @@ def look_at_layered(nodes: Nodes, layered: Layered) -> float:
     q, ago, gained = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
-        corner, linear = cracks.corner[first:end], cracks.linear[first * (BLOCK // LANES) :]
+        corner = cracks.corner[first:end]
+        fetch_cells(first, cracks.linear, room)
         fetch(Y, corner, my, nodes.y, room)
         fetch_lean(first, end, layered)
         if layered.leans:
             fetch(V, corner, my, nodes.v, room)
-            lean_block(q, nodes.alpha, ago, linear, room)
+            lean_block(q, nodes.alpha, ago, room)
             gained += put_lean(first, end, layered)
-        if moved(q, linear, room) > 0:
+        if moved(q, room) > 0:
             for k in range(first, end):
                 if room[SAYS + k - first] > 0.0:
                     evaluate_at(k, nodes, layered)
-        force_block(d, linear, room)
+            fetch_cells(first, cracks.linear, room)
+        force_block(d, room)
         add_forces(corner, my, room, layered.nodes.force)
     return gained
 
@@ -147,10 +149,11 @@ def crack_forces(my: int, y: Array, layered: Layered) -> None:
     on.force[: W + 1] = layered.lean.force
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
-        corner, linear = cracks.corner[first:end], cracks.linear[first * (BLOCK // LANES) :]
+        corner = cracks.corner[first:end]
+        fetch_cells(first, cracks.linear, on.room)
         fetch(Y, corner, my, y, on.room)
         fetch_lean(first, end, layered)
-        force_block(layered.plate.d, linear, on.room)
+        force_block(layered.plate.d, on.room)
         add_forces(corner, my, on.room, on.force)
 
 
@@ -160,10 +163,11 @@ def damping_power(my: int, v: Array, mean: Array, layered: Layered) -> float:
     cracks, room, power = layered.cells, layered.nodes.room, 0.0
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
-        corner, linear = cracks.corner[first:end], cracks.linear[first * (BLOCK // LANES) :]
+        corner = cracks.corner[first:end]
+        fetch_cells(first, cracks.linear, room)
         fetch(Y, corner, my, mean, room)
         fetch(V, corner, my, v, room)
-        power_block(layered.plate.d, linear, room)
+        power_block(layered.plate.d, room)
         for lane in range(end - first):
             power += room[SAYS + lane]
     return power
