@@ -5,10 +5,10 @@ M per width, and these act on the four nodes. Two further modes of the nodes, th
 alone: they keep a small stiffness, else a share of the broken cell would keep carrying tension. Out-of-plane shear
 goes through the four edge springs of the cell, each limited by friction and what is left of the cohesion.
 
-Between two evaluations of the law a cell is linear: forces are the tangent times the strain plus an offset. It is
-evaluated anew when a strain of its faces has moved by `MOVED` of e_0. What the tangent stores is known exactly, so each
-evaluation books what cracking, crushing and slip have taken; what changes because a crack closed or opened a little
-earlier or later than the tangent knew is booked as ``switching``.
+Between two evaluations of the law a cell is linear: forces are the tangent times the strain plus an offset, all in the
+axes of the sheet. It is evaluated anew when a strain of its faces has moved by `MOVED` of e_0. What the tangent stores
+is known exactly, so each evaluation books what cracking, crushing and slip have taken; what changes because a crack
+closed or opened a little earlier or later than the tangent knew is booked as ``switching``.
 """
 
 from __future__ import annotations
@@ -16,35 +16,30 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import Legendre
 
 from lattice.compiled import compiled
 from lattice.cracks.kinematics import Edges, Strain
 from lattice.cracks.law import Local
+from lattice.cracks.layers import LAYERS, STACK
+from lattice.explicit.layout import LANES, aligned
 from lattice.grid import Array, IntArray
 
-
-def lobatto(n: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Points of the Lobatto rule on -1 ... 1 and weights of sum 1 (Abramowitz and Stegun 25.4.32)."""
-    P = Legendre.basis(n - 1)
-    z = np.concatenate(([-1.0], np.sort(np.real(P.deriv().roots())), [1.0]))
-    w = 1.0 / (n * (n - 1) * P(z) ** 2)
-    return tuple(z.tolist()), tuple(w.tolist())
-
-
-LAYERS = 11  #: with 7 the moment of a thrust is up to 4 % off, with 11 1.7 %
-POINTS, WEIGHTS = lobatto(LAYERS)  #: the outermost layers are the faces
 MOVED = 0.02  #: change of a face's strain, as share of e_0, at which the law is evaluated anew
 #: share of the largest strain of a face that is added to e_0 there: in an open crack the place between the layers that
 #: touch and those that do not is then known to 0.2 % of the thickness
 WIDE = 0.1
 HOURGLASS = 0.05  #: stiffness of the modes without mean strain, as share of E h (in bending times h^2 / 12)
 
-NN, NT, TT, GG = range(4)  #: entries of a tangent
-N_N, N_T, N_G, M_N, M_T, M_G = range(6)  #: resultants across the crack, along it and shear
-E_X, E_Y, G_XY, K_X, K_Y, K_XY = range(6)  #: strains in the axes of the sheet
+N_N, N_T, N_G, M_N, M_T, M_G = range(6)  #: resultants along two axes and shear
 LOSSES = ("cracking", "crushing", "rubbing", "switching", "turning")
 CRACKING, CRUSHING, RUBBING, SWITCHING, TURNING = range(5)  #: entries of ``Cracks.losses``
+
+#: Lines of ``Cracks.linear``, each with a value of `LANES` cells side by side. Tangents are symmetric and have six:
+#: xx, xy, x-shear, yy, y-shear, shear-shear; offsets, and strains ``seen`` at the last evaluation, are x, y, shear.
+MEMBRANE, COUPLING, BENDING, OFFSET, TURN, STIFF, HELD, SEEN, SEEN_TURN, FAR, FACE, SKEW, SKEW_TURN = (
+    LANES * line for line in (0, 6, 12, 18, 21, 24, 28, 32, 35, 38, 39, 40, 41)
+)
+BLOCK = 42 * LANES  #: length of the lines of `LANES` cells
 
 
 class Plate(NamedTuple):
@@ -65,7 +60,7 @@ def plate_at(b: int, plate: Plate, local: Local) -> Plate:
 
 
 class Cracks(NamedTuple):
-    """Layered cells, struct of arrays with room for m of them. N, M are (n, t, shear) in the axes of the crack."""
+    """Layered cells, struct of arrays with room for m of them."""
 
     cell: IntArray  #: (m,) number of the cell
     corner: IntArray  #: (m,) place of its node 0 in a padded row-by-row array
@@ -75,16 +70,10 @@ class Cracks(NamedTuple):
     slip: Array  #: (m, LAYERS) plastic shear strain
     shear_slip: Array  #: (m, 4) slip of the edge springs [m]
     thrust: Array  #: (m, 2) sum of the compression across n and t [N/m]
-    membrane: Array  #: (4, m) tangent `NN` ... of N to the strain [N/m]
-    coupling: Array  #: (4, m) of N to the curvature and of M to the strain [N]
-    bending: Array  #: (4, m) of M to the curvature [N m]
-    offset: Array  #: (6, m) `N_N` ... without strain [N/m], [N]
-    stiff: Array  #: (4, m) tangent of the edge springs [N/m]
-    held: Array  #: (4, m) their force without elongation [N]
-    seen: Array  #: (6, m) `E_X` ... at the last evaluation
     constant: Array  #: (m,) energy by which the tangent's differs from what is stored [J]
-    force: Array  #: (4, 5, m) on nodes 0 to 3 in the present sub-step [N], [N m]
+    linear: Array  #: (m / LANES * BLOCK,) `MEMBRANE` ... of `LANES` cells, then of the next [N/m], [N], [N m]
     losses: Array  #: (5,) `CRACKING` ...: sums over all cells [J]
+    stack: Array  #: (STACK,) room for the layers of a cell
 
 
 def room_for(m: int) -> Cracks:
@@ -99,59 +88,75 @@ def room_for(m: int) -> Cracks:
         slip=zeros((m, LAYERS)),
         shear_slip=zeros((m, 4)),
         thrust=zeros((m, 2)),
-        membrane=zeros((4, m)),
-        coupling=zeros((4, m)),
-        bending=zeros((4, m)),
-        offset=zeros((6, m)),
-        stiff=zeros((4, m)),
-        held=zeros((4, m)),
-        seen=zeros((6, m)),
         constant=zeros(m),
-        force=zeros((4, 5, m)),
+        linear=aligned(-(-m // LANES) * BLOCK),
         losses=zeros(len(LOSSES)),
+        stack=aligned(STACK),
     )
 
 
 @compiled(inline="always")
-def tangent_energy(k: int, e: Strain, cracks: Cracks) -> float:
+def place(k: int) -> int:
+    """Where the values of cell k begin in ``Cracks.linear``; one of its lines lies so much further."""
+    return k // LANES * BLOCK + k % LANES
+
+
+@compiled(inline="always")
+def times(line: int, at: int, x: float, y: float, s: float, linear: Array) -> tuple[float, float, float]:
+    """A tangent that begins at ``line`` times (x, y, shear)."""
+    a, L = line + at, LANES
+    xy, xs, ys = linear[a + L], linear[a + 2 * L], linear[a + 4 * L]
+    return (
+        linear[a] * x + xy * y + xs * s,
+        xy * x + linear[a + 3 * L] * y + ys * s,
+        xs * x + ys * y + linear[a + 5 * L] * s,
+    )
+
+
+@compiled(inline="always")
+def offsets(line: int, at: int, linear: Array) -> tuple[float, float, float]:
+    """Three values, from ``line`` on."""
+    return linear[line + at], linear[line + LANES + at], linear[line + 2 * LANES + at]
+
+
+@compiled(inline="always")
+def forces(at: int, e: Strain, linear: Array) -> tuple[float, float, float, float, float, float]:
+    """N and M of the linear cell at ``at`` from its tangent alone, in the axes of the sheet [N/m], [N]."""
+    m, u = times(MEMBRANE, at, e.n, e.t, e.g, linear), times(COUPLING, at, e.kn, e.kt, e.kg, linear)
+    v, p = times(COUPLING, at, e.n, e.t, e.g, linear), times(BENDING, at, e.kn, e.kt, e.kg, linear)
+    return m[0] + u[0], m[1] + u[1], m[2] + u[2], v[0] + p[0], v[1] + p[1], v[2] + p[2]
+
+
+@compiled(inline="always")
+def resultants(at: int, e: Strain, linear: Array) -> tuple[float, float, float, float, float, float]:
+    """N and M of the linear cell at ``at``, see `place`, in the axes of the sheet [N/m], [N]."""
+    f, n, m = forces(at, e, linear), offsets(OFFSET, at, linear), offsets(TURN, at, linear)
+    return n[0] + f[0], n[1] + f[1], n[2] + f[2], m[0] + f[3], m[1] + f[4], m[2] + f[5]
+
+
+@compiled(inline="always")
+def tangent_energy(at: int, e: Strain, linear: Array) -> float:
     """Energy of the linear cell per area at a strain, without its constant [J/m2]."""
-    m, c, b, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
-    E: float = 0.5 * (m[NN, k] * e.n * e.n + m[TT, k] * e.t * e.t + m[GG, k] * e.g * e.g) + m[NT, k] * e.n * e.t
-    E += 0.5 * (b[NN, k] * e.kn * e.kn + b[TT, k] * e.kt * e.kt + b[GG, k] * e.kg * e.kg) + b[NT, k] * e.kn * e.kt
-    E += c[NN, k] * e.n * e.kn + c[NT, k] * (e.n * e.kt + e.t * e.kn) + c[TT, k] * e.t * e.kt + c[GG, k] * e.g * e.kg
-    E += o[N_N, k] * e.n + o[N_T, k] * e.t + o[N_G, k] * e.g + o[M_N, k] * e.kn + o[M_T, k] * e.kt + o[M_G, k] * e.kg
-    return E
+    f, n, m = forces(at, e, linear), offsets(OFFSET, at, linear), offsets(TURN, at, linear)
+    E: float = (n[0] + 0.5 * f[0]) * e.n + (n[1] + 0.5 * f[1]) * e.t + (n[2] + 0.5 * f[2]) * e.g
+    return E + (m[0] + 0.5 * f[3]) * e.kn + (m[1] + 0.5 * f[4]) * e.kt + (m[2] + 0.5 * f[5]) * e.kg
 
 
 @compiled(inline="always")
-def resultants(k: int, e: Strain, whole: float, cracks: Cracks) -> tuple[float, float, float, float, float, float]:
-    """N and M of the linear cell at a strain, in the axes of its crack [N/m], [N]; ``whole`` as in `crack_forces`."""
-    m, u, p, o = cracks.membrane, cracks.coupling, cracks.bending, cracks.offset
+def edge_forces(at: int, long: Edges, linear: Array) -> Edges:
+    """Of the edge springs at these elongations [N]."""
+    held, stiff, L = HELD + at, STIFF + at, LANES
     return (
-        whole * o[N_N, k] + m[NN, k] * e.n + m[NT, k] * e.t + u[NN, k] * e.kn + u[NT, k] * e.kt,
-        whole * o[N_T, k] + m[NT, k] * e.n + m[TT, k] * e.t + u[NT, k] * e.kn + u[TT, k] * e.kt,
-        whole * o[N_G, k] + m[GG, k] * e.g + u[GG, k] * e.kg,
-        whole * o[M_N, k] + u[NN, k] * e.n + u[NT, k] * e.t + p[NN, k] * e.kn + p[NT, k] * e.kt,
-        whole * o[M_T, k] + u[NT, k] * e.n + u[TT, k] * e.t + p[NT, k] * e.kn + p[TT, k] * e.kt,
-        whole * o[M_G, k] + u[GG, k] * e.g + p[GG, k] * e.kg,
+        linear[held] + linear[stiff] * long[0],
+        linear[held + L] + linear[stiff + L] * long[1],
+        linear[held + 2 * L] + linear[stiff + 2 * L] * long[2],
+        linear[held + 3 * L] + linear[stiff + 3 * L] * long[3],
     )
 
 
 @compiled(inline="always")
-def edge_forces(k: int, long: Edges, whole: float, cracks: Cracks) -> Edges:
-    """Of the edge springs at these elongations [N]; ``whole`` as in `crack_forces`."""
-    held, stiff = cracks.held, cracks.stiff
-    return (
-        whole * held[0, k] + stiff[0, k] * long[0],
-        whole * held[1, k] + stiff[1, k] * long[1],
-        whole * held[2, k] + stiff[2, k] * long[2],
-        whole * held[3, k] + stiff[3, k] * long[3],
-    )
-
-
-@compiled(inline="always")
-def edge_energy(k: int, long: Edges, energy: float, cracks: Cracks) -> float:
+def edge_energy(at: int, long: Edges, energy: float, linear: Array) -> float:
     """``energy`` and that of the linear edge springs, without their constant [J]."""
     for i in range(4):
-        energy += (0.5 * cracks.stiff[i, k] * long[i] + cracks.held[i, k]) * long[i]
+        energy += (0.5 * linear[STIFF + LANES * i + at] * long[i] + linear[HELD + LANES * i + at]) * long[i]
     return energy

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lattice.cracks.begin import face_stresses
 from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
 from lattice.cracks.law import CrackLaw, local_of
-from lattice.cracks.lean import book_pull, gather_lean, lean_energy, lean_on
+from lattice.cracks.lean import book_pull, gather_lean, lean_energy
 from lattice.cracks.march import Stretch, march_cracked
 from lattice.cracks.motion import Nodes, crack_forces, energies, evaluate_at, give, hourglass_energy, pull_on_held
 from lattice.cracks.state import LayeredCells
@@ -89,7 +89,7 @@ class CrackingEngine(ExplicitEngine):
 
     def _nodes(self) -> Nodes:
         y, v = (a.reshape(5, -1) for a in self.motion)
-        x, way = (a.reshape(5, -1) for a in (self.mesh.scratch.before, self.mesh.scratch.after))
+        x, way = (a.reshape(5, -1) for a in self.mesh.scratch)
         return Nodes(y, v, x, way, self.motion.y.shape[2], self.alpha, self.dt)
 
     def book_pull(self, time: float) -> None:
@@ -99,8 +99,8 @@ class CrackingEngine(ExplicitEngine):
     def hold(self) -> float:
         """As `ExplicitEngine.hold`, from layered cells and slopes as well."""
         layered, y = self.layered.view(), self.motion.y
-        crack_forces(y.shape[2], y.reshape(5, -1), 1.0, layered)
-        return super().hold() + float(pull_on_held(y.shape[2], self.mesh.held.reshape(-1), layered))
+        crack_forces(y.shape[2], y.reshape(5, -1), layered)
+        return super().hold() + float(pull_on_held(self.mesh.held.reshape(-1), layered.nodes.force))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""
@@ -139,12 +139,11 @@ class CrackingEngine(ExplicitEngine):
 
     def _next_velocity(self, now: Motion, forces: tuple[PointForces, ...]) -> Array:
         mesh, trial, layered = self.mesh, Motion(now.y, now.v.copy()), self.layered.view()
-        crack_forces(now.y.shape[2], now.y.reshape(5, -1), 1.0, layered)
+        crack_forces(now.y.shape[2], now.y.reshape(5, -1), layered)
         sweep(trial, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
         for f in forces:
             push(f.row, f.column, f.force, trial, mesh.kick, mesh.pace.go)
-        give(layered.used, trial, mesh.kick, mesh.pace.go, layered.cells)
-        lean_on(trial, mesh.kick, mesh.pace.go, layered.lean.force)
+        give(trial, mesh.kick, mesh.pace.go, layered.nodes.force)
         return trial.v
 
     # ---- what others ask of the layered cells -----------------------------------------------------------------

@@ -53,9 +53,9 @@ def strain_of(b: int, my: int, q: float, y: Array) -> tuple[Strain, Hourglass]:
 
 
 @compiled(inline="always")
-def leaned(e: Strain, b: int, lean: Array, whole: float) -> Strain:
-    """With the membrane strain ``lean`` (3, nodes) that the cell at b has from its slope, times ``whole``."""
-    return Strain(e.n + whole * lean[0, b], e.t + whole * lean[1, b], e.g + whole * lean[2, b], e.kn, e.kt, e.kg)
+def leaned(e: Strain, b: int, lean: Array) -> Strain:
+    """With the membrane strain ``lean`` (3, nodes) that the cell at b has from its slope."""
+    return Strain(e.n + lean[0, b], e.t + lean[1, b], e.g + lean[2, b], e.kn, e.kt, e.kg)
 
 
 @compiled(inline="always")

@@ -90,6 +90,16 @@ def softening(ice: Ice, fracture_energy: float, d: float) -> float:
     return 2.0 * fracture_energy / (ice.sigma_t * d)
 
 
+class History(NamedTuple):
+    """What a layer has been through."""
+
+    D_n: float  #: damage across the crack, 0 to 1
+    D_t: float  #: damage along it
+    p_n: float  #: strain of crushing across the crack [-]
+    p_t: float  #: strain of crushing along it [-]
+    slip: float  #: plastic part of the shear strain [-]
+
+
 class Layer(NamedTuple):
     """What a layer carries and how it answers to small strains while nothing in it cracks, crushes or slips."""
 
@@ -109,51 +119,29 @@ class Layer(NamedTuple):
 
 @compiled(inline="always")
 def damage_of(q: float, law: CrackLaw) -> float:
-    """Damage at the strain q > e_0 across a crack: linear softening."""
-    if q >= law.e_f:
-        return 1.0
-    return 1.0 - law.e_0 / q * (law.e_f - q) / (law.e_f - law.e_0)
+    """Damage at the strain q across a crack: none up to e_0, then linear softening."""
+    share = law.e_0 / (law.e_f - law.e_0)  # infinite where the ice is brittle: then it is not used
+    soft = 1.0 - share * (law.e_f - q) / q
+    torn = 1.0 if q >= law.e_f else soft
+    return torn if q > law.e_0 else 0.0
 
 
 @compiled(inline="always")
 def stiffness_shares(x_n: float, x_t: float, D_n: float, D_t: float, nu: float) -> tuple[float, float]:
     """(a_n, a_t) of the law at the elastic strains (x_n, x_t): 1 - D where the stress is tension, else 1."""
-    a_n, a_t = 1.0, 1.0
-    for _ in range(2):
-        a_n = 1.0 - D_n if x_n + nu * a_t * x_t > 0.0 else 1.0
-        a_t = 1.0 - D_t if x_t + nu * a_n * x_n > 0.0 else 1.0
+    a_n = 1.0 - D_n if x_n + nu * x_t > 0.0 else 1.0
+    a_t = 1.0 - D_t if x_t + nu * a_n * x_n > 0.0 else 1.0
+    a_n = 1.0 - D_n if x_n + nu * a_t * x_t > 0.0 else 1.0
+    a_t = 1.0 - D_t if x_t + nu * a_n * x_n > 0.0 else 1.0
     return a_n, a_t
 
 
 @compiled(inline="always")
-def normal_energy(s_n: float, s_t: float, a_n: float, a_t: float, law: CrackLaw) -> float:
-    """Elastic energy of the normal stresses [J/m3]; a crack without stiffness stores none."""
-    stored: float = -law.nu * s_n * s_t / law.E
-    if a_n > 0.0:
-        stored += 0.5 * s_n * s_n / (law.E * a_n)
-    if a_t > 0.0:
-        stored += 0.5 * s_t * s_t / (law.E * a_t)
-    return stored
-
-
-@compiled(inline="always")
-def tension(x_n: float, x_t: float, damage: Array, law: CrackLaw) -> tuple[float, float, float, float, float]:
-    """Stresses at elastic strains; ``damage`` (2,) grows as the law asks. Also (a_n, a_t) and the energy it took."""
+def normal_stresses(x_n: float, x_t: float, a_n: float, a_t: float, law: CrackLaw) -> tuple[float, float, float]:
+    """At the elastic strains (x_n, x_t), and E / (1 - nu^2 a_n a_t) [Pa]."""
     nu = law.nu
-    a_n, a_t = stiffness_shares(x_n, x_t, damage[N], damage[T], nu)
     f = law.E / (1.0 - nu * nu * a_n * a_t)
-    s_n, s_t = f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n)
-    q_n, q_t, took = x_n + nu * s_t / law.E, x_t + nu * s_n / law.E, 0.0
-    D_n = max(damage[N], damage_of(q_n, law) if q_n > law.e_0 else 0.0)
-    D_t = max(damage[T], damage_of(q_t, law) if q_t > law.e_0 else 0.0)
-    if D_n > damage[N] or D_t > damage[T]:
-        took = normal_energy(s_n, s_t, a_n, a_t, law)
-        damage[N], damage[T] = D_n, D_t
-        a_n, a_t = stiffness_shares(x_n, x_t, D_n, D_t, nu)
-        f = law.E / (1.0 - nu * nu * a_n * a_t)
-        s_n, s_t = f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n)
-        took -= normal_energy(s_n, s_t, a_n, a_t, law)
-    return s_n, s_t, a_n, a_t, took
+    return f * a_n * (x_n + nu * a_t * x_t), f * a_t * (x_t + nu * a_n * x_n), f
 
 
 @compiled(inline="always")
@@ -163,45 +151,75 @@ def crushing_of(x_n: float, x_t: float, a_n: float, a_t: float, law: CrackLaw) -
     The stress returns to the box of both strengths by the shortest way in energy (associated flow), which is along the
     axis whose stress alone, brought back, leaves the other one inside and crushes, not stretches.
     """
-    c, nu, E = law.sigma_c, law.nu, law.E
+    c, nu, E, soft = law.sigma_c, law.nu, law.E, 1.0 / law.E
     s_t = E * a_t * x_t - nu * a_t * c
-    p_n = x_n + (c + nu * s_t) / E
-    if s_t >= -c and p_n <= 0.0:
-        return -c, s_t, p_n, 0.0
+    p_n = x_n + (c + nu * s_t) * soft
     s_n = E * a_n * x_n - nu * a_n * c
-    p_t = x_t + (c + nu * s_n) / E
-    if s_n >= -c and p_t <= 0.0:
-        return s_n, -c, 0.0, p_t
-    return -c, -c, x_n + (1.0 - nu) * c / E, x_t + (1.0 - nu) * c / E
+    p_t = x_t + (c + nu * s_n) * soft
+    across, along = (s_t >= -c) & (p_n <= 0.0), (s_n >= -c) & (p_t <= 0.0)
+    only_n, only_t, both = across, along & (not across), (1.0 - nu) * c * soft
+    s_t = s_t if only_n else -c
+    s_n = s_n if only_t else -c
+    p_n = p_n if only_n else 0.0 if only_t else x_n + both
+    p_t = p_t if only_t else 0.0 if only_n else x_t + both
+    return s_n, s_t, p_n, p_t
+
+
+@compiled(inline="always")
+def shear_limit(D_n: float, D_t: float, s_n: float, s_t: float, law: CrackLaw) -> float:
+    """Largest shear stress that the cracks bear, infinite without cracks [Pa]."""
+    push_n, push_t = -s_n if s_n < 0.0 else 0.0, -s_t if s_t < 0.0 else 0.0
+    across = (1.0 - D_n) * law.cohesion + law.mu * push_n if D_n > 0.0 else math.inf
+    along = (1.0 - D_t) * law.cohesion + law.mu * push_t if D_t > 0.0 else math.inf
+    return along if along < across else across
+
+
+@compiled(inline="always")
+def follow(eps_n: float, eps_t: float, gamma: float, was: History, law: CrackLaw) -> tuple[Layer, History]:
+    """A layer at these strains and what it has been through then. No branch: all layers of a cell go side by side."""
+    E, nu, c = law.E, law.nu, law.sigma_c
+    x_n, x_t, soft = eps_n - was.p_n, eps_t - was.p_t, nu / E
+    a_n, a_t = stiffness_shares(x_n, x_t, was.D_n, was.D_t, nu)
+    o_n, o_t, _ = normal_stresses(x_n, x_t, a_n, a_t, law)
+    D_n, D_t = damage_of(x_n + soft * o_t, law), damage_of(x_t + soft * o_n, law)
+    D_n, D_t = D_n if D_n > was.D_n else was.D_n, D_t if D_t > was.D_t else was.D_t
+    a_n, a_t = stiffness_shares(x_n, x_t, D_n, D_t, nu)
+    s_n, s_t, f = normal_stresses(x_n, x_t, a_n, a_t, law)
+    cracking = 0.5 * ((o_n - s_n) * x_n + (o_t - s_t) * x_t)
+    k_n, k_t, r_n, r_t = crushing_of(x_n, x_t, a_n, a_t, law)
+    crushes = (s_n < -c) | (s_t < -c)
+    s_n, s_t = k_n if crushes else s_n, k_t if crushes else s_t
+    r_n, r_t = r_n if crushes else 0.0, r_t if crushes else 0.0
+    e_n, e_t = 0.0 if r_n < 0.0 else E * a_n, 0.0 if r_t < 0.0 else E * a_t
+    nn, nt, tt = e_n if crushes else f * a_n, 0.0 if crushes else f * nu * a_n * a_t, e_t if crushes else f * a_t
+    G = 0.5 * E / (1.0 + nu)
+    tried, limit = G * (gamma - was.slip), shear_limit(D_n, D_t, s_n, s_t, law)
+    slips = abs(tried) > limit
+    tau = math.copysign(limit, tried) if slips else tried
+    moved = (tried - tau) * (1.0 / G)
+    cracking += 0.5 * G * moved * moved if cracking > 0.0 else 0.0  # shear that a new crack lets go at once
+    stored = 0.5 * (s_n * (x_n - r_n) + s_t * (x_t - r_t) + tau * tau * (1.0 / G))
+    now = History(D_n, D_t, was.p_n + r_n, was.p_t + r_t, was.slip + moved)
+    gg, rubbing = 0.0 if slips else G, tau * moved
+    return Layer(
+        s_n,
+        s_t,
+        tau,
+        nn,
+        nt,
+        tt,
+        gg,
+        now.slip,
+        stored=stored,
+        cracking=cracking,
+        crushing=-c * (r_n + r_t),
+        rubbing=rubbing,
+    ), now
 
 
 @compiled(error_model="numpy")
 def layer(eps_n: float, eps_t: float, gamma: float, damage: Array, crushed: Array, slip: float, law: CrackLaw) -> Layer:
     """A layer at these strains. ``damage`` and ``crushed`` (2,) for n and t are its states, which follow in place."""
-    E, nu = law.E, law.nu
-    s_n, s_t, a_n, a_t, cracking = tension(eps_n - crushed[N], eps_t - crushed[T], damage, law)
-    f = E / (1.0 - nu * nu * a_n * a_t)
-    nn, nt, tt, crushing = f * a_n, f * nu * a_n * a_t, f * a_t, 0.0
-    if s_n < -law.sigma_c or s_t < -law.sigma_c:
-        s_n, s_t, p_n, p_t = crushing_of(eps_n - crushed[N], eps_t - crushed[T], a_n, a_t, law)
-        crushing = -law.sigma_c * (p_n + p_t)
-        crushed[N], crushed[T] = crushed[N] + p_n, crushed[T] + p_t
-        nn, nt, tt = 0.0 if p_n < 0.0 else E * a_n, 0.0, 0.0 if p_t < 0.0 else E * a_t
-    G = 0.5 * E / (1.0 + nu)
-    tau, gg, rubbing = G * (gamma - slip), G, 0.0
-    if damage[N] > 0.0 or damage[T] > 0.0:
-        limit = math.inf
-        if damage[N] > 0.0:
-            limit = (1.0 - damage[N]) * law.cohesion + law.mu * max(-s_n, 0.0)
-        if damage[T] > 0.0:
-            limit = min(limit, (1.0 - damage[T]) * law.cohesion + law.mu * max(-s_t, 0.0))
-        if abs(tau) > limit:
-            new = math.copysign(limit, tau)
-            moved = (tau - new) / G
-            if cracking > 0.0:  # shear that a new crack lets go at once
-                cracking += 0.5 * G * moved * moved
-            slip, rubbing, gg, tau = slip + moved, new * moved, 0.0, new
-    stored = normal_energy(s_n, s_t, a_n, a_t, law) + 0.5 * tau * tau / G
-    return Layer(
-        s_n, s_t, tau, nn, nt, tt, gg, slip, stored=stored, cracking=cracking, crushing=crushing, rubbing=rubbing
-    )
+    out, now = follow(eps_n, eps_t, gamma, History(damage[N], damage[T], crushed[N], crushed[T], slip), law)
+    damage[N], damage[T], crushed[N], crushed[T] = now.D_n, now.D_t, now.p_n, now.p_t
+    return out

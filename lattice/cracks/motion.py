@@ -7,28 +7,40 @@ from typing import NamedTuple
 import numpy as np
 
 from lattice.compiled import compiled
+from lattice.cracks.blocks import (
+    GAINED,
+    NEW,
+    OLD,
+    PULL,
+    SAYS,
+    V,
+    Y,
+    add_forces,
+    fetch,
+    fetch_cells,
+    force_block,
+    lean_block,
+    moved,
+    power_block,
+)
 from lattice.cracks.cells import (
-    E_X,
-    E_Y,
-    G_XY,
-    K_X,
-    K_XY,
-    K_Y,
+    FAR,
     MOVED,
+    SEEN,
+    SEEN_TURN,
     WIDE,
     Cracks,
     Plate,
     edge_energy,
-    edge_forces,
+    place,
     plate_at,
-    resultants,
     tangent_energy,
 )
-from lattice.cracks.evaluate import evaluate
-from lattice.cracks.kinematics import elongations, leaned, strain_of, turned, turned_back
+from lattice.cracks.evaluate import evaluate, write
+from lattice.cracks.kinematics import elongations, leaned, strain_of
 from lattice.cracks.law import CrackLaw, Local, law_at
-from lattice.cracks.slopes import Lean
-from lattice.explicit.layout import PHI_X, PHI_Y, U_X, U_Y, Motion, PerNode, W
+from lattice.cracks.slopes import Lean, OnNodes
+from lattice.explicit.layout import LANES, U_X, Motion, PerNode, W
 from lattice.grid import Array
 
 
@@ -42,6 +54,7 @@ class Layered(NamedTuple):
     lean: Lean
     leans: bool  #: slopes strain the middle plane; else rotations are small
     local: Local  #: how the ice of each cell differs from ``plate`` and ``law``
+    nodes: OnNodes
 
 
 class Nodes(NamedTuple):
@@ -56,107 +69,130 @@ class Nodes(NamedTuple):
     dt: float  #: sub-step [s]
 
 
-@compiled(inline="always")
-def moved(k: int, my: int, y: Array, layered: Layered) -> bool:
-    """Whether a face's strain has moved so far since the last evaluation that the law must be asked anew."""
-    b, s = layered.cells.corner[k], layered.cells.seen
-    plate = plate_at(b, layered.plate, layered.local)
-    half = 0.5 * plate.h
-    wide = max(abs(s[E_X, k]) + half * abs(s[K_X, k]), abs(s[E_Y, k]) + half * abs(s[K_Y, k]))
-    far: float = MOVED * (layered.local.e_0[b] + WIDE * wide)
-    in_sheet, _ = strain_of(b, my, 0.5 / plate.d, y)
-    e = leaned(in_sheet, b, layered.lean.strain, 1.0)
-    a: float = abs(e.n - s[E_X, k]) + half * abs(e.kn - s[K_X, k])
-    c: float = abs(e.t - s[E_Y, k]) + half * abs(e.kt - s[K_Y, k])
-    g: float = abs(e.g - s[G_XY, k]) + half * abs(e.kg - s[K_XY, k])
-    return a > far or c > far or g > far
-
-
-@compiled(nogil=True)
-def renew(nodes: Nodes, layered: Layered) -> int:
-    """Evaluates the law in every cell whose strain has moved, at the displacements y - alpha v; how many."""
-    evaluated = 0
-    for k in range(layered.used):
-        if moved(k, nodes.my, nodes.y, layered):
-            evaluate_at(k, nodes, layered)
-            evaluated += 1
-    return evaluated
-
-
 @compiled(nogil=True)
 def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
     """Evaluates the law in cell k at y - alpha v; its energy [J]."""
-    cracks, my = layered.cells, nodes.my
-    b, s = cracks.corner[k], cracks.seen
+    cracks, my, lean, local = layered.cells, nodes.my, layered.lean.strain, layered.local
+    b, linear = cracks.corner[k], cracks.linear
     for c in range(5):
         for n in (b, b + my, b + 1, b + my + 1):
             nodes.x[c, n] = nodes.y[c, n] - nodes.alpha * nodes.v[c, n]
             nodes.way[c, n] = nodes.dt * nodes.v[c, n]
-    in_sheet, _ = strain_of(b, my, 0.5 / layered.plate.d, nodes.y)
-    e = leaned(in_sheet, b, layered.lean.strain, 1.0)
-    s[E_X, k], s[E_Y, k], s[G_XY, k] = e.n, e.t, e.g
-    s[K_X, k], s[K_Y, k], s[K_XY, k] = e.kn, e.kt, e.kg
-    lean, local = layered.lean.strain, layered.local
     plate, law = plate_at(b, layered.plate, local), law_at(b, layered.law, local)
+    in_sheet, _ = strain_of(b, my, 0.5 / plate.d, nodes.y)
+    e = leaned(in_sheet, b, lean)
+    write(SEEN, place(k), (e.n, e.t, e.g), linear)
+    write(SEEN_TURN, place(k), (e.kn, e.kt, e.kg), linear)
+    wide = max(abs(e.n) + 0.5 * plate.h * abs(e.kn), abs(e.t) + 0.5 * plate.h * abs(e.kt))
+    write(FAR, place(k), (MOVED * (local.e_0[b] + WIDE * wide),), linear)
     stored: float = evaluate(k, nodes.x, nodes.way, my, plate, law, cracks, lean)
     return stored
 
 
 @compiled(nogil=True)
-def crack_forces(my: int, y: Array, whole: float, layered: Layered) -> None:
-    """Forces of the layered cells on their nodes at the effective displacements y (5, nodes).
+def put_lean(first: int, end: int, layered: Layered) -> float:
+    """Slopes of cells from a block to their places; the energy that these have given, over d^2 [J/m2]."""
+    room, lean, gained = layered.nodes.room, layered.lean, 0.0
+    for k in range(first, end):
+        b, lane = layered.cells.corner[k], k - first
+        gained += room[GAINED + lane]
+        for i in range(3):
+            lean.strain[i, b] = room[NEW + i * LANES + lane]
+        for i in range(2):
+            lean.pull[i, b] = room[PULL + i * LANES + lane]
+    return gained
 
-    ``whole`` is 1; 0 leaves out what the cells carry without strain, so that y = alpha v gives their damping.
+
+@compiled(nogil=True)
+def fetch_lean(first: int, end: int, layered: Layered) -> None:
+    """Strains from slopes into the room of a block, those before and, until they are known, those now."""
+    room, strain = layered.nodes.room, layered.lean.strain
+    for k in range(first, end):
+        b, lane = layered.cells.corner[k], k - first
+        for i in range(3):
+            room[OLD + i * LANES + lane] = room[NEW + i * LANES + lane] = strain[i, b]
+
+
+@compiled(nogil=True)
+def look_at_layered(nodes: Nodes, layered: Layered) -> float:
+    """New slopes of layered cells, their law where their strain has moved, and their forces, added on the nodes.
+
+    Returns the energy that the slopes have given, over d^2 [J/m2].
     """
-    d, cracks, lean = layered.plate.d, layered.cells, layered.lean.strain
-    q, half, f, F = 0.5 / d, 0.5 * d, 0.5 * d, cracks.force
-    for k in range(layered.used):
-        b, c, s = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k]
-        plate = plate_at(b, layered.plate, layered.local)
-        H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
-        e, h = strain_of(b, my, q, y)
-        Nn, Nt, Ng, Mn, Mt, Mg = resultants(k, turned(leaned(e, b, lean, whole), c, s), whole, cracks)
-        N1, N2, N3 = turned_back(Nn, Nt, Ng, c, s)
-        M1, M2, M3 = turned_back(Mn, Mt, Mg, c, s)
-        Q0, Q1, Q2, Q3 = edge_forces(k, elongations(b, my, half, y), whole, cracks)
-        # nodes 0 (-, -), 1 (+, -), 2 (-, +), 3 (+, +)
-        F[0, U_X, k], F[1, U_X, k] = f * (N1 + N3 - H * h.x), f * (-N1 + N3 + H * h.x)
-        F[2, U_X, k], F[3, U_X, k] = f * (N1 - N3 + H * h.x), f * (-N1 - N3 - H * h.x)
-        F[0, U_Y, k], F[1, U_Y, k] = f * (N2 + N3 - H * h.y), f * (N2 - N3 + H * h.y)
-        F[2, U_Y, k], F[3, U_Y, k] = f * (-N2 + N3 + H * h.y), f * (-N2 - N3 - H * h.y)
-        F[0, W, k], F[1, W, k], F[2, W, k], F[3, W, k] = Q0 + Q2, Q3 - Q0, Q1 - Q2, -Q1 - Q3
-        F[0, PHI_X, k], F[1, PHI_X, k] = f * (M1 + M3 - R * h.tx - Q0), f * (-M1 + M3 + R * h.tx - Q0)
-        F[2, PHI_X, k], F[3, PHI_X, k] = f * (M1 - M3 + R * h.tx - Q1), f * (-M1 - M3 - R * h.tx - Q1)
-        F[0, PHI_Y, k], F[1, PHI_Y, k] = f * (M2 + M3 - R * h.ty - Q2), f * (M2 - M3 + R * h.ty - Q3)
-        F[2, PHI_Y, k], F[3, PHI_Y, k] = f * (-M2 + M3 + R * h.ty - Q2), f * (-M2 - M3 - R * h.ty - Q3)
+    cracks, room, d, my = layered.cells, layered.nodes.room, layered.plate.d, nodes.my
+    q, ago, gained = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0
+    for first in range(0, layered.used, LANES):
+        end = min(first + LANES, layered.used)
+        corner = cracks.corner[first:end]
+        fetch_cells(first, cracks.linear, room)
+        fetch(Y, corner, my, nodes.y, room)
+        fetch_lean(first, end, layered)
+        if layered.leans:
+            fetch(V, corner, my, nodes.v, room)
+            lean_block(q, nodes.alpha, ago, room)
+            gained += put_lean(first, end, layered)
+        if moved(q, room) > 0:
+            for k in range(first, end):
+                if room[SAYS + k - first] > 0.0:
+                    evaluate_at(k, nodes, layered)
+            fetch_cells(first, cracks.linear, room)
+        force_block(d, room)
+        add_forces(corner, my, room, layered.nodes.force)
+    return gained
 
 
 @compiled(nogil=True)
-def give(used: int, motion: Motion, kick: PerNode, go: float, cracks: Cracks) -> None:
-    """Adds the forces of `crack_forces` to a sub-step that has been made."""
-    F, my, ny = cracks.force, motion.y.shape[2], kick.u.shape[1]
-    y, v = motion.y.reshape(5, -1), motion.v.reshape(5, -1)
-    u, w, phi = kick.u.reshape(-1), kick.w.reshape(-1), kick.phi.reshape(-1)
-    for k in range(used):
-        b = cracks.corner[k]
-        at = b // my * ny + b % my
-        for n, g, r in ((b, at, 0), (b + my, at + ny, 1), (b + 1, at + 1, 2), (b + my + 1, at + ny + 1, 3)):
-            for c in range(5):
-                dv = (u[g] if c < W else w[g] if c == W else phi[g]) * F[r, c, k]
-                v[c, n] += dv
-                y[c, n] += go * dv
+def crack_forces(my: int, y: Array, layered: Layered) -> None:
+    """Forces of the layered cells and of slopes on the nodes at the effective displacements y (5, nodes)."""
+    cracks, on = layered.cells, layered.nodes
+    on.force[:] = 0.0
+    on.force[: W + 1] = layered.lean.force
+    for first in range(0, layered.used, LANES):
+        end = min(first + LANES, layered.used)
+        corner = cracks.corner[first:end]
+        fetch_cells(first, cracks.linear, on.room)
+        fetch(Y, corner, my, y, on.room)
+        fetch_lean(first, end, layered)
+        force_block(layered.plate.d, on.room)
+        add_forces(corner, my, on.room, on.force)
 
 
 @compiled(nogil=True)
-def pull_on_held(my: int, held: Array, layered: Layered) -> float:
-    """Force along x that nodes with ``held`` (places,) 1 need against `crack_forces` and slopes [N]."""
-    F, lean, total = layered.cells.force, layered.lean.force, 0.0
-    for k in range(layered.used):
-        b = layered.cells.corner[k]
-        total -= held[b] * F[0, U_X, k] + held[b + my] * F[1, U_X, k]
-        total -= held[b + 1] * F[2, U_X, k] + held[b + my + 1] * F[3, U_X, k]
+def damping_power(my: int, v: Array, mean: Array, layered: Layered) -> float:
+    """Sum of v . K ``mean`` over layered cells with their tangents K, for two motions of the nodes (5, nodes)."""
+    cracks, room, power = layered.cells, layered.nodes.room, 0.0
+    for first in range(0, layered.used, LANES):
+        end = min(first + LANES, layered.used)
+        corner = cracks.corner[first:end]
+        fetch_cells(first, cracks.linear, room)
+        fetch(Y, corner, my, mean, room)
+        fetch(V, corner, my, v, room)
+        power_block(layered.plate.d, room)
+        for lane in range(end - first):
+            power += room[SAYS + lane]
+    return power
+
+
+@compiled(nogil=True)
+def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
+    """Adds forces (5, places) on all nodes to a sub-step that has been made."""
+    y, v, f = motion.y, motion.v, force.reshape(motion.y.shape)
+    nx, ny = kick.u.shape
+    for c in range(5):
+        mobility = kick.u if c < W else kick.w if c == W else kick.phi
+        for i in range(nx):
+            for j in range(ny):
+                dv = mobility[i, j] * f[c, i, j]
+                v[c, i, j] += dv
+                y[c, i, j] += go * dv
+
+
+@compiled(nogil=True)
+def pull_on_held(held: Array, force: Array) -> float:
+    """Force along x that nodes with ``held`` (places,) 1 need against the forces (5, places) [N]."""
+    total = 0.0
     for n in range(held.shape[0]):
-        total -= held[n] * lean[U_X, n]
+        total -= held[n] * force[U_X, n]
     return total
 
 
@@ -178,14 +214,14 @@ def hourglass_energy(k: int, nodes: Nodes, layered: Layered) -> float:
 @compiled(nogil=True)
 def energies(my: int, x: Array, layered: Layered) -> Array:
     """Energy of each layered cell at displacements x (5, nodes), hourglass modes included."""
-    d, cracks, lean = layered.plate.d, layered.cells, layered.lean.strain
+    d, cracks, lean, linear = layered.plate.d, layered.cells, layered.lean.strain, layered.cells.linear
     out, q, half = np.empty(layered.used), 0.5 / d, 0.5 * d
     for k in range(layered.used):
         b = cracks.corner[k]
         plate = plate_at(b, layered.plate, layered.local)
         H, R = plate.hourglass, plate.hourglass * plate.h * plate.h / 12.0
         e, h = strain_of(b, my, q, x)
-        E = tangent_energy(k, turned(leaned(e, b, lean, 1.0), cracks.axis[0, k], cracks.axis[1, k]), cracks)
+        E = tangent_energy(place(k), leaned(e, b, lean), linear)
         E += 0.5 * (H * (h.x * h.x + h.y * h.y) + R * (h.tx * h.tx + h.ty * h.ty))
-        out[k] = edge_energy(k, elongations(b, my, half, x), cracks.constant[k] + plate.d * plate.d * E, cracks)
+        out[k] = edge_energy(place(k), elongations(b, my, half, x), cracks.constant[k] + d * d * E, linear)
     return out

@@ -1,11 +1,11 @@
-"""Slopes of the sheet and what they do to its membrane strain: the arrays, see `lattice.cracks.lean`."""
+"""What lies at the places of nodes and of the cells that begin there: slopes, see `lattice.cracks.lean`, and forces."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
+from lattice.cracks.blocks import LOOK
+from lattice.explicit.layout import LINE, aligned
 from lattice.grid import Array
 
 
@@ -16,10 +16,22 @@ class Lean(NamedTuple):
     stress: Array  #: (3, places) its stress over the thickness in elastic cells, along x and y and shear [N/m]
     pull: Array  #: (2, places) N . s of the membrane forces N per width and the slopes s [N/m]
     force: Array  #: (3, places) of all this on the nodes, along x, y and z [N]
-    gained: Array  #: (places,) energy that the last change of slope has given to cells, over d^2 [J/m2]
+
+
+class OnNodes(NamedTuple):
+    """What the loops leave for each other within a sub-step."""
+
+    force: Array  #: (5, places) of layered cells and slopes on the nodes [N], [N m]
+    room: Array  #: (LOOK,) of a block of layered cells, see `lattice.cracks.blocks`
+    rows: Array  #: (10 LINE,) of a row of cells, see `lattice.cracks.lean`
 
 
 def level(places: int) -> Lean:
     """No slope."""
-    three, two = (3, places), (2, places)
-    return Lean(np.zeros(three), np.zeros(three), np.zeros(two), np.zeros(three), np.zeros(places))
+    three = (3, places)
+    return Lean(aligned(*three), aligned(*three), aligned(2, places), aligned(*three))
+
+
+def on_nodes(places: int) -> OnNodes:
+    """No force."""
+    return OnNodes(aligned(5, places), aligned(LOOK), aligned(10 * LINE))

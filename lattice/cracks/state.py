@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lattice.cracks.cells import E_X, E_Y, G_XY, LOSSES, WEIGHTS, Cracks, Plate, room_for
+from lattice.cracks.cells import BLOCK, LOSSES, SEEN, Cracks, Plate, room_for
 from lattice.cracks.law import CrackLaw, Local, N
+from lattice.cracks.layers import WEIGHTS
 from lattice.cracks.motion import Layered
-from lattice.cracks.slopes import Lean, level
+from lattice.cracks.slopes import Lean, level, on_nodes
+from lattice.explicit.layout import LANES
 from lattice.grid import Array, BoolArray, IntArray
 
 
@@ -21,7 +23,7 @@ class LayeredCells:
     def __init__(self, law: CrackLaw, plate: Plate, local: Local, room: int = 64):
         """``local`` has a place for each of a padded row-by-row array of all nodes."""
         self.law, self.plate, self.local, self.count, self._cracks = law, plate, local, 0, room_for(room)
-        self.lean, self.leans = level(local.E.size), True
+        self.lean, self.leans, self.nodes = level(local.E.size), True, on_nodes(local.E.size)
 
     def __copy__(self) -> LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
@@ -33,7 +35,8 @@ class LayeredCells:
 
     def view(self) -> Layered:
         """What the compiled loops take; changes of the arrays are seen here."""
-        return Layered(self.count, self._cracks, self.plate, self.law, self.lean, self.leans, self.local)
+        c = self._cracks
+        return Layered(self.count, c, self.plate, self.law, self.lean, self.leans, self.local, nodes=self.nodes)
 
     def add(self, cell: int, corner: int, angle: float) -> int:
         """A cell begins to crack across the direction ``angle`` [rad]; returns its place. ``corner`` as in `Cracks`."""
@@ -42,6 +45,7 @@ class LayeredCells:
         k, c = self.count, self._cracks
         for array in self._by_cell():
             array[k] = 0
+        self._lines()[k // LANES, :, k % LANES] = 0.0
         c.cell[k], c.corner[k], c.axis[:, k] = cell, corner, (np.cos(angle), np.sin(angle))
         self.count += 1
         return k
@@ -53,15 +57,21 @@ class LayeredCells:
         self._cracks = new
 
     def _by_cell(self) -> Iterator[NDArray[Any]]:
-        """All arrays of the cells, with the cell as first index; not the losses, which are sums."""
-        m = len(self._cracks.cell)
-        return (np.moveaxis(a, a.shape.index(m), 0) for a in self._cracks[:-1])
+        """All arrays of the cells but ``linear``, with the cell as first index."""
+        c = self._cracks
+        yield from (c.cell, c.corner, c.axis.T, c.damage, c.crushed, c.slip, c.shear_slip, c.thrust, c.constant)
+
+    def _lines(self) -> Array:
+        """The lines of ``linear``, (blocks, lines, LANES)."""
+        return self._cracks.linear.reshape(-1, BLOCK // LANES, LANES)
 
     def drop(self, gone: BoolArray) -> None:
         """Forgets the cells marked in ``gone`` (count,); the others keep their order."""
         stay = np.flatnonzero(~gone)
         for array in self._by_cell():
             array[: len(stay)] = array[stay]
+        lines, to = self._lines(), np.arange(len(stay))
+        lines[to // LANES, :, to % LANES] = lines[stay // LANES, :, stay % LANES]
         self.count = len(stay)
 
     # ---- what the cells are like ------------------------------------------------------------------------------
@@ -108,7 +118,8 @@ class LayeredCells:
         c, n = self._cracks, self.count
         through = np.asarray((c.damage[:n] >= 1.0).all(axis=1))
         cos, sin = c.axis[:, :n]
-        e11, e22, g12 = (c.seen[i, :n] for i in (E_X, E_Y, G_XY))
+        lines = self._lines()
+        e11, e22, g12 = (lines[:, SEEN // LANES + i].reshape(-1)[:n] for i in range(3))
         opening = np.stack(
             (cos**2 * e11 + sin**2 * e22 + cos * sin * g12, sin**2 * e11 + cos**2 * e22 - cos * sin * g12), axis=1
         )

@@ -29,6 +29,7 @@ from lattice.explicit.layout import (
     Motion,
     Pace,
     PerNode,
+    Scratch,
     W,
 )
 from lattice.grid import Array, IntArray
@@ -37,33 +38,75 @@ NX, SX, QX, BX, TX, NY, SY, QY, BY, TY, D1, D2, G1, G2, C0, C1, C2, C3, C4 = (k 
 CARRIED = 14 * LINE  #: where the sums begin in ``rows`` that a row leaves for the next one
 
 
+@compiled(inline="always")
+def stretches(i: int, j: int, y: Array, half: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+    """Elongations of the connections from node (i, j) along x, along y, and along both diagonals of its cell.
+
+    Along an axis: (2.2) to (2.5) lengthwise, sideways, across, in bending and in torsion.
+    """
+    a0, a1, a2, a3, a4 = y[U_X, i, j], y[U_Y, i, j], y[W, i, j], y[PHI_X, i, j], y[PHI_Y, i, j]
+    b0, b1, b2, b3, b4 = y[U_X, i + 1, j], y[U_Y, i + 1, j], y[W, i + 1, j], y[PHI_X, i + 1, j], y[PHI_Y, i + 1, j]
+    c0, c1, c2, c3, c4 = y[U_X, i, j + 1], y[U_Y, i, j + 1], y[W, i, j + 1], y[PHI_X, i, j + 1], y[PHI_Y, i, j + 1]
+    e0, e1, e3, e4 = y[U_X, i + 1, j + 1], y[U_Y, i + 1, j + 1], y[PHI_X, i + 1, j + 1], y[PHI_Y, i + 1, j + 1]
+    return (
+        (b0 - a0, b1 - a1, b2 - a2 + half * (a3 + b3), b3 - a3, b4 - a4),
+        (c1 - a1, c0 - a0, c2 - a2 + half * (a4 + c4), c4 - a4, c3 - a3),
+        (e0 - a0 + e1 - a1, b0 - c0 - b1 + c1, e3 - a3 + e4 - a4, b3 - c3 - b4 + c4),
+    )
+
+
+@compiled(inline="always")
+def weights(i: int, j: int, intact: Intact) -> tuple[tuple[float, float], tuple[float, float], tuple[float, float]]:
+    """Shares of the connections of `stretches`, in the plane and in bending each."""
+    plane, bend = intact.plane, intact.bend
+    cell, bent = plane[i + 1, j + 1], bend[i + 1, j + 1]
+    along, across = (cell + plane[i + 1, j], bent + bend[i + 1, j]), (cell + plane[i, j + 1], bent + bend[i, j + 1])
+    return along, across, (cell, bent)
+
+
 @compiled(nogil=True)
 def connections(i: int, ny: int, y: Array, intact: Intact, springs: HalfSprings, rows: Array) -> None:
     """Forces of the connections from row i along x, along y and along both diagonals, (2.2)-(2.5) and chapter 3."""
     kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
-    kd, gd, half, plane, bend = springs.K_n_dia, springs.G_dia, springs.lever, intact.plane, intact.bend
+    kd, gd, half = springs.K_n_dia, springs.G_dia, springs.lever
     for j in range(ny):
-        cell, bent = plane[i + 1, j + 1], bend[i + 1, j + 1]
-        x, z = cell + plane[i + 1, j], cell + plane[i, j + 1]
-        bx, bz = bent + bend[i + 1, j], bent + bend[i, j + 1]
-        a0, a1, a2, a3, a4 = y[U_X, i, j], y[U_Y, i, j], y[W, i, j], y[PHI_X, i, j], y[PHI_Y, i, j]
-        b0, b1, b2, b3, b4 = y[U_X, i + 1, j], y[U_Y, i + 1, j], y[W, i + 1, j], y[PHI_X, i + 1, j], y[PHI_Y, i + 1, j]
-        c0, c1, c2, c3, c4 = y[U_X, i, j + 1], y[U_Y, i, j + 1], y[W, i, j + 1], y[PHI_X, i, j + 1], y[PHI_Y, i, j + 1]
-        e0, e1, e3, e4 = y[U_X, i + 1, j + 1], y[U_Y, i + 1, j + 1], y[PHI_X, i + 1, j + 1], y[PHI_Y, i + 1, j + 1]
-        rows[NX + j] = kn * x * (b0 - a0)
-        rows[SX + j] = ks * x * (b1 - a1)
-        rows[QX + j] = ko * x * (b2 - a2 + half * (a3 + b3))
-        rows[BX + j] = gr * bx * (b3 - a3)
-        rows[TX + j] = gt * bx * (b4 - a4)
-        rows[NY + j] = kn * z * (c1 - a1)
-        rows[SY + j] = ks * z * (c0 - a0)
-        rows[QY + j] = ko * z * (c2 - a2 + half * (a4 + c4))
-        rows[BY + j] = gr * bz * (c4 - a4)
-        rows[TY + j] = gt * bz * (c3 - a3)
-        rows[D1 + j] = kd * cell * (e0 - a0 + e1 - a1)
-        rows[D2 + j] = kd * cell * (b0 - c0 - b1 + c1)
-        rows[G1 + j] = gd * bent * (e3 - a3 + e4 - a4)
-        rows[G2 + j] = gd * bent * (b3 - c3 - b4 + c4)
+        (x, bx), (z, bz), (cell, bent) = weights(i, j, intact)
+        u, v, c = stretches(i, j, y, half)
+        rows[NX + j] = kn * x * u[0]
+        rows[SX + j] = ks * x * u[1]
+        rows[QX + j] = ko * x * u[2]
+        rows[BX + j] = gr * bx * u[3]
+        rows[TX + j] = gt * bx * u[4]
+        rows[NY + j] = kn * z * v[0]
+        rows[SY + j] = ks * z * v[1]
+        rows[QY + j] = ko * z * v[2]
+        rows[BY + j] = gr * bz * v[3]
+        rows[TY + j] = gt * bz * v[4]
+        rows[D1 + j] = kd * cell * c[0]
+        rows[D2 + j] = kd * cell * c[1]
+        rows[G1 + j] = gd * bent * c[2]
+        rows[G2 + j] = gd * bent * c[3]
+
+
+@compiled(nogil=True)
+def power_of_springs(two: Scratch, intact: Intact, springs: HalfSprings, rows: Array, ny: int) -> float:
+    """Sum of a . K b over the springs, for two motions a and b of the nodes."""
+    kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
+    kd, gd, half, total = springs.K_n_dia, springs.G_dia, springs.lever, 0.0
+    (before, mean), nx = two, intact.plane.shape[0] - 1
+    rows[NX : NX + ny] = 0.0
+    for i in range(nx):
+        for j in range(ny):
+            (x, bx), (z, bz), (cell, bent) = weights(i, j, intact)
+            (a, b, c), (u, v, w) = stretches(i, j, before, half), stretches(i, j, mean, half)
+            power = kn * (x * a[0] * u[0] + z * b[0] * v[0]) + ks * (x * a[1] * u[1] + z * b[1] * v[1])
+            power += ko * (x * a[2] * u[2] + z * b[2] * v[2]) + gr * (bx * a[3] * u[3] + bz * b[3] * v[3])
+            power += gt * (bx * a[4] * u[4] + bz * b[4] * v[4])
+            power += kd * cell * (c[0] * w[0] + c[1] * w[1]) + gd * bent * (c[2] * w[2] + c[3] * w[3])
+            rows[NX + j] += power
+    for j in range(ny):
+        total += rows[NX + j]
+    return total
 
 
 @compiled(nogil=True)

@@ -60,11 +60,10 @@ class Pace(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room for `march.damped`, each (5, n_x+1, m_y)."""
+    """Velocities in a sub-step whose damping is taken stock of, each (5, n_x+1, m_y); else room."""
 
     before: Array
-    y: Array
-    after: Array
+    mean: Array  #: of those before and after
 
 
 class Intact(NamedTuple):
@@ -109,7 +108,7 @@ def mesh(grid: Grid, held: BoolArray, kick: PerNode, springs: HalfSprings, pace:
     wide, columns = _wide(grid), columns_of(grid)
     if wide > LINE:
         raise ValueError(f"{grid.ny} nodes across are too many for the explicit engine: use at most {LINE - LANES}")
-    room, padded, masses = aligned(3, 5, grid.nx + 1, wide), aligned(3, grid.nx, columns), aligned(3, grid.nx, columns)
+    room, padded, masses = aligned(2, 5, grid.nx + 1, wide), aligned(3, grid.nx, columns), aligned(3, grid.nx, columns)
     threshold = aligned(grid.nx, columns)
     threshold[:] = np.inf
     on_x = aligned(grid.nx + 1, wide)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from lattice.compiled import compiled
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
-from lattice.explicit.kernels import pull_of_springs, push, sweep
-from lattice.explicit.layout import PHI_X, Mesh, Motion, Pace, PerNode, W
+from lattice.explicit.kernels import power_of_springs, pull_of_springs, push, sweep
+from lattice.explicit.layout import PHI_X, Mesh, Motion, W
 from lattice.explicit.screen import Screen, overloaded
 from lattice.grid import Array, IntArray
 
@@ -36,29 +36,28 @@ def contact_force(touch: Touch, now: Array, motion: Motion, alpha: float) -> Non
 
 
 @compiled(nogil=True)
-def damped(motion: Motion, mesh: Mesh) -> None:
-    """Into the scratch: velocities after a sub-step in which nothing but damping acts, and those before it."""
-    room, pace = mesh.scratch, mesh.pace
-    room.before[:] = motion.v
-    room.after[:] = motion.v
-    room.y[:] = pace.alpha * motion.v
-    water = Pace(0.0, 0.0, 0.0, pace.drag + pace.alpha * pace.buoy)  # dt c / (rho h)
-    sweep(Motion(room.y, room.after), mesh.intact, mesh.kick, mesh.springs, water, mesh.rows)
+def dissipated(motion: Motion, mesh: Mesh) -> float:
+    """Work that damping of springs and water took in a sub-step [J], exact for leapfrog.
 
-
-@compiled(nogil=True)
-def dissipated(v: Array, before: Array, after: Array, mass: PerNode) -> float:
-    """Work that damping took in a sub-step [J]: mass x loss of velocity x mean velocity, exact for leapfrog."""
-    work = 0.0
+    It acts on the velocities ``before`` and takes its force times the mean velocity, which is left in the scratch. The
+    mean is none where nodes are held.
+    """
+    mass, pace, (before, mean) = mesh.mass, mesh.pace, mesh.scratch
     nx, ny = mass.u.shape
+    drag, taken = pace.drag + pace.alpha * pace.buoy, 0.0  # dt c / (rho h)
+    for c in range(5):
+        part = mass.u if c < W else mass.w if c == W else mass.phi
+        for i in range(nx):
+            for j in range(ny):
+                free = 0.5 if part[i, j] > 0.0 else 0.0
+                mean[c, i, j] = free * (before[c, i, j] + motion.v[c, i, j])
     for i in range(nx):
+        row = 0.0
         for j in range(ny):
-            node = 0.0
-            for c in range(5):
-                part = mass.u[i, j] if c < W else mass.w[i, j] if c == W else mass.phi[i, j]
-                node += part * (before[c, i, j] - after[c, i, j]) * (before[c, i, j] + v[c, i, j])
-            work += 0.5 * node
-    return work
+            row += mass.w[i, j] * before[W, i, j] * mean[W, i, j]
+        taken += row
+    springs: float = power_of_springs(mesh.scratch, mesh.intact, mesh.springs, mesh.rows, ny)
+    return drag * taken + (pace.go - pace.alpha) * pace.alpha * springs
 
 
 @compiled(nogil=True)
@@ -94,7 +93,7 @@ def march(
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
         if step % stride == 0:
-            damped(motion, mesh)
+            mesh.scratch.before[:] = motion.v
         contact_work += half_power(load, touch, sums, motion.v)
         hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
@@ -102,7 +101,7 @@ def march(
         push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
         contact_work += half_power(load, touch, sums, motion.v)
         if step % stride == 0:
-            loss += dissipated(motion.v, mesh.scratch.before, mesh.scratch.after, mesh.mass)
+            loss += dissipated(motion, mesh)
         count = overloaded(motion, mesh.threshold, screen, pace.alpha)
         if count > 0:
             return Made(step + 1, count, contact_work, loss, hold)

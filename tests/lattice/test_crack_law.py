@@ -7,11 +7,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from lattice.cracks.cells import POINTS, WEIGHTS, Plate, room_for
+from lattice.cracks.cells import Plate, room_for
 from lattice.cracks.evaluate import evaluate
 from lattice.cracks.law import CrackLaw, layer, local_of
+from lattice.cracks.layers import POINTS, WEIGHTS
 from lattice.cracks.motion import Layered, crack_forces
-from lattice.cracks.slopes import level
+from lattice.cracks.slopes import level, on_nodes
 
 Z, W = np.array(POINTS), np.array(WEIGHTS)
 E, SIGMA_T, SIGMA_C, H, CELL = 8.7e9, 430e3, 4e6, 3.0, 2.8
@@ -199,8 +200,11 @@ def energy(cracks, plate, the_law, x):
 
 
 def nodal(cracks, plate, x):
-    crack_forces(2, np.ascontiguousarray(x), 1.0, Layered(1, cracks, plate, law(), level(4), leans=False, local=SAME))
-    return cracks.force[:, :, 0]  # nodes (0,0), (1,0), (0,1), (1,1)
+    on = on_nodes(4)
+    crack_forces(
+        2, np.ascontiguousarray(x), Layered(1, cracks, plate, law(), level(4), leans=False, local=SAME, nodes=on)
+    )
+    return on.force[:, [0, 2, 1, 3]].T  # nodes (0,0), (1,0), (0,1), (1,1)
 
 
 @pytest.mark.parametrize("damage", [0.0, 0.4])

@@ -9,7 +9,7 @@ from lattice.contact import NoContact
 from lattice.cracks.cells import TURNING
 from lattice.cracks.engine import CrackingEngine
 from lattice.cracks.law import law_of
-from lattice.cracks.lean import look_at_slopes
+from lattice.cracks.lean import look_at_cells
 from lattice.explicit.engine import SubSteps
 from lattice.explicit.forces import NOTHING, touch_at
 from lattice.grid import Grid
@@ -34,7 +34,7 @@ def placed(e, u, q):
     e.set_cells(live, np.full(e.grid.cells, np.inf), np.ones(e.grid.nodes, bool))
     e.put(e.motion.y, np.hstack((u, q)))
     e.put(e.motion.v, np.zeros((e.grid.nodes, 5)))
-    look_at_slopes(e._nodes(), e.mesh.intact.plane.reshape(-1), e.layered.view())
+    look_at_cells(e._nodes(), e.mesh.intact.plane.reshape(-1), e.layered.view())
     return live
 
 

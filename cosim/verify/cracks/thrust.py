@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from cosim.verify.case import CaseResult, Figure, at_most, near, value
-from lattice.cracks.cells import M_N, N_N, Cracks, Plate, resultants, room_for
+from lattice.cracks.cells import M_N, N_N, Cracks, Plate, place, resultants, room_for
 from lattice.cracks.evaluate import evaluate
 from lattice.cracks.kinematics import Strain
 from lattice.cracks.law import CrackLaw, N, layer
@@ -56,7 +56,7 @@ def cell_section(strain: float, p: dict[str, Any]) -> tuple[float, float]:
     (cracks, plate), x = cracked_cell(p), np.zeros((5, 4))  # two rows of two nodes
     x[U_X, 2:], x[PHI_X, 2:] = strain * p["d"], p["curvature"] * p["d"]
     evaluate(0, x, np.zeros((5, 4)), 2, plate, law_of(p), cracks, FLAT)
-    force = resultants(0, Strain(strain, 0.0, 0.0, p["curvature"], 0.0, 0.0), 1.0, cracks)
+    force = resultants(place(0), Strain(strain, 0.0, 0.0, p["curvature"], 0.0, 0.0), cracks.linear)
     return -force[N_N], force[M_N]
 
 
