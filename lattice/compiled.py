@@ -19,12 +19,13 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba import cfunc, njit
+from numba import cfunc, njit, types
 
 config: Any = numba.config  #: made when numba is loaded, so that its names are not known before
 _njit: Any = njit  #: its types do not know a signature or options that are passed on
 
 PACKAGE = Path(__file__).parent
+NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  #: of a kernel that kernels call
 KEPT = 3  #: older folders that stay, for branches between which one goes to and fro
 
 
@@ -80,7 +81,26 @@ if _FOLDER is None:
 
 def compiled(*signature: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there."""
-    return lambda kernel: _kept(_njit(*signature, cache=_FOLDER is not None, **options), kernel)
+    if signature:
+        return lambda kernel: _kept(_njit(*signature, cache=_FOLDER is not None, **options), kernel)
+    return lambda kernel: _linked(kernel, options)
+
+
+def _linked(kernel: Callable[..., Any], options: dict[str, Any]) -> Any:
+    """A kernel that is compiled apart for Python and for kernels that call it: half of the time goes into less.
+
+    For kernels nothing is made that takes arguments from Python. And a number that stands in a call is a number like
+    any other: numba would compile the kernel once more for each.
+    """
+    outer = _kept(_njit(cache=_FOLDER is not None, **options), kernel)
+    inner = _kept(_njit(cache=_FOLDER is not None, **NO_WRAPPERS, **options), kernel, "inner")
+
+    def call(args: Any, kws: Any) -> Any:
+        plain = {name: types.unliteral(kind) for name, kind in kws.items()}
+        return inner.get_call_template([types.unliteral(kind) for kind in args], plain)
+
+    outer.get_call_template, outer.get_overload = call, inner.get_overload
+    return outer
 
 
 def callback(signature: str) -> Callable[[Callable[..., Any]], Any]:
@@ -88,9 +108,9 @@ def callback(signature: str) -> Callable[[Callable[..., Any]], Any]:
     return lambda kernel: _kept(cfunc(signature, cache=_FOLDER is not None), kernel)
 
 
-def _kept(compile_it: Callable[..., Any], kernel: Callable[..., Any]) -> Any:
+def _kept(compile_it: Callable[..., Any], kernel: Callable[..., Any], part: str = "") -> Any:
     before = config.CACHE_DIR
-    config.CACHE_DIR = before if _FOLDER is None else str(_FOLDER)
+    config.CACHE_DIR = before if _FOLDER is None else str(_FOLDER / part)
     try:
         return compile_it(kernel)
     finally:
