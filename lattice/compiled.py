@@ -19,9 +19,11 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba import cfunc, njit, types
+from numba import cfunc, njit
+from numba.core.types import unliteral
 
 config: Any = numba.config  #: made when numba is loaded, so that its names are not known before
+_plain: Any = unliteral  #: the type of the number 0 is that of a number
 _njit: Any = njit  #: its types do not know a signature or options that are passed on
 
 PACKAGE = Path(__file__).parent
@@ -96,10 +98,10 @@ def _linked(kernel: Callable[..., Any], options: dict[str, Any]) -> Any:
     inner = _kept(_njit(cache=_FOLDER is not None, **NO_WRAPPERS, **options), kernel, "inner")
 
     def call(args: Any, kws: Any) -> Any:
-        plain = {name: types.unliteral(kind) for name, kind in kws.items()}
-        return inner.get_call_template([types.unliteral(kind) for kind in args], plain)
+        plain = {name: _plain(kind) for name, kind in kws.items()}
+        return inner.get_call_template([_plain(kind) for kind in args], plain)
 
-    outer.get_call_template, outer.get_overload = call, inner.get_overload
+    outer.get_call_template, outer.get_overload, outer.inner = call, inner.get_overload, inner
     return outer
 
 
