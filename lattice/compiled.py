@@ -76,15 +76,15 @@ def _say_that_nothing_is_kept() -> None:
     warnings.warn_explicit(text, RuntimeWarning, "brash", 0)
 
 
-_FOLDER = cache_folder(PACKAGE)
-if _FOLDER is None:
+FOLDER = cache_folder(PACKAGE)  #: of this run
+if FOLDER is None:
     _say_that_nothing_is_kept()
 
 
 def compiled(*signature: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there."""
     if signature:
-        return lambda kernel: _kept(_njit(*signature, cache=_FOLDER is not None, **options), kernel)
+        return lambda kernel: _kept(_njit(*signature, cache=FOLDER is not None, **options), kernel)
     return lambda kernel: _linked(kernel, options)
 
 
@@ -94,8 +94,8 @@ def _linked(kernel: Callable[..., Any], options: dict[str, Any]) -> Any:
     For kernels nothing is made that takes arguments from Python. And a number that stands in a call is a number like
     any other: numba would compile the kernel once more for each.
     """
-    outer = _kept(_njit(cache=_FOLDER is not None, **options), kernel)
-    inner = _kept(_njit(cache=_FOLDER is not None, **NO_WRAPPERS, **options), kernel, "inner")
+    outer = _kept(_njit(cache=FOLDER is not None, **options), kernel)
+    inner = _kept(_njit(cache=FOLDER is not None, **NO_WRAPPERS, **options), kernel, "inner")
 
     def call(args: Any, kws: Any) -> Any:
         plain = {name: _plain(kind) for name, kind in kws.items()}
@@ -107,12 +107,12 @@ def _linked(kernel: Callable[..., Any], options: dict[str, Any]) -> Any:
 
 def callback(signature: str) -> Callable[[Callable[..., Any]], Any]:
     """`numba.cfunc`, for libraries that call back, kept likewise."""
-    return lambda kernel: _kept(cfunc(signature, cache=_FOLDER is not None), kernel)
+    return lambda kernel: _kept(cfunc(signature, cache=FOLDER is not None), kernel)
 
 
 def _kept(compile_it: Callable[..., Any], kernel: Callable[..., Any], part: str = "") -> Any:
     before = config.CACHE_DIR
-    config.CACHE_DIR = before if _FOLDER is None else str(_FOLDER / part)
+    config.CACHE_DIR = before if FOLDER is None else str(FOLDER / part)
     try:
         return compile_it(kernel)
     finally:
