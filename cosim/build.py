@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cosim.build_motion import build_motion, repeats_of
 from cosim.build_rubble import build_rubble, filling_rate
 from cosim.errors import InputError
-from cosim.ice.broken import broken
-from cosim.ice.fields import varied
 from cosim.loads import loads_of
 from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
+from cosim.scenario.variation import FIELDS
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, BoolArray, Motion, RubbleParticipant, Structure
@@ -43,6 +42,10 @@ from lattice.ice import BeamTest, Ice
 from lattice.implicit.engine import Engine
 from lattice.sheet import Sheet
 from lattice.stiffness import STIFFNESS_SETS
+from lattice.varied import Varied
+
+if TYPE_CHECKING:
+    from cosim.ice.broken import Broken
 
 
 def build(scenario: Scenario, motion: Motion | None = None, *, begins: bool = True) -> Scheduler:
@@ -134,7 +137,7 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
     s = scenario.sheet
     front = structure.foremost_x(ice.freeboard if structure.faces_down else ice.freeboard - ice.h)
     grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
-    state = None if not s.broken else broken((scenario.folder or Path()) / s.broken, grid)
+    state = _broken(scenario, grid)
     if state is not None:
         grid = replace(grid, x0=grid.x0 + room_before(structure, ice, grid, state.gone))
     sheet = _whole_sheet(scenario, ice, grid)
@@ -144,6 +147,22 @@ def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
         except ValueError as error:
             raise InputError(f"sheet.broken = {s.broken}: {error}") from error
     return sheet
+
+
+def _broken(scenario: Scenario, grid: Grid) -> Broken | None:
+    if not scenario.sheet.broken:
+        return None
+    from cosim.ice.broken import broken  # tables are slow to import, and few ice is broken or varies
+
+    return broken((scenario.folder or Path()) / scenario.sheet.broken, grid)
+
+
+def _varied(scenario: Scenario, grid: Grid) -> Varied | None:
+    if not any(getattr(scenario.ice, name) for name in FIELDS):
+        return None
+    from cosim.ice.fields import varied
+
+    return varied(scenario, grid)
 
 
 def room_before(structure: Structure, ice: Ice, grid: Grid, gone: BoolArray) -> float:
@@ -172,7 +191,7 @@ def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
     springs = STIFFNESS_SETS[s.stiffness](ice)
     criteria = chosen(scenario.fracture.judged)
     options: dict[str, Any] = {"held_in_plane": held, "damping": damping, "alpha": alpha}
-    options["varied"] = varied(scenario, grid)
+    options["varied"] = _varied(scenario, grid)
     dynamic = scenario.fracture.propagation == "dynamic"
     if scenario.fracture.cracks == "closing":
         measured = build_measured(scenario)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from cosim.errors import InputError
-from cosim.ice.columns import numbers, read_table
 from cosim.scenario.files import read_toml
 from cosim.scenario.scenario import Scenario
 from coupling.interface import FREEDOMS, Array, Motion
@@ -72,6 +71,8 @@ def _of_matrices(path: Path) -> LinearMotion:
 
 def _of_modes(path: Path) -> LinearMotion:
     """A table with a row for each mode."""
+    from cosim.ice.columns import numbers, read_table  # slow to import
+
     table = read_table(path, MODES)
     frequency, ratio, mass = (numbers(path, table, name) for name in MODES)
     shape = np.column_stack([_column(path, table, name, len(mass)) for name in FREEDOMS])
@@ -85,6 +86,8 @@ def _of_modes(path: Path) -> LinearMotion:
 
 def _of_series(path: Path, duration: float) -> Prescribed:
     """A table with a row for each time."""
+    from cosim.ice.columns import numbers, read_table
+
     table = read_table(path, ("time_s",))
     time = numbers(path, table, "time_s")
     if not any(name in table.column_names for name in SERIES):
@@ -103,4 +106,6 @@ def _of_fmu(path: Path, repeats: int) -> Motion:
 
 def _column(path: Path, table: Any, name: str, count: int) -> Array:
     """A column, or zeros where there is none."""
+    from cosim.ice.columns import numbers
+
     return numbers(path, table, name) if name in table.column_names else np.zeros(count)

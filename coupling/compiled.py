@@ -20,11 +20,14 @@ from typing import Any
 
 import numba
 from numba import cfunc, njit
+from numba.core.types import unliteral
 
 config: Any = numba.config  #: made when numba is loaded, so that its names are not known before
+_plain: Any = unliteral  #: the type of the number 0 is that of a number
 _njit: Any = njit  #: its types do not know a signature or options that are passed on
 
 PACKAGE = Path(__file__).parent
+NO_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  #: of a kernel that kernels call
 KEPT = 3  #: older folders that stay, for branches between which one goes to and fro
 
 
@@ -73,24 +76,43 @@ def _say_that_nothing_is_kept() -> None:
     warnings.warn_explicit(text, RuntimeWarning, "brash", 0)
 
 
-_FOLDER = cache_folder(PACKAGE)
-if _FOLDER is None:
+FOLDER = cache_folder(PACKAGE)  #: of this run
+if FOLDER is None:
     _say_that_nothing_is_kept()
 
 
 def compiled(*signature: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there."""
-    return lambda kernel: _kept(_njit(*signature, cache=_FOLDER is not None, **options), kernel)
+    if signature:
+        return lambda kernel: _kept(_njit(*signature, cache=FOLDER is not None, **options), kernel)
+    return lambda kernel: _linked(kernel, options)
+
+
+def _linked(kernel: Callable[..., Any], options: dict[str, Any]) -> Any:
+    """A kernel that is compiled apart for Python and for kernels that call it: half of the time goes into less.
+
+    For kernels nothing is made that takes arguments from Python. And a number that stands in a call is a number like
+    any other: numba would compile the kernel once more for each.
+    """
+    outer = _kept(_njit(cache=FOLDER is not None, **options), kernel)
+    inner = _kept(_njit(cache=FOLDER is not None, **NO_WRAPPERS, **options), kernel, "inner")
+
+    def call(args: Any, kws: Any) -> Any:
+        plain = {name: _plain(kind) for name, kind in kws.items()}
+        return inner.get_call_template([_plain(kind) for kind in args], plain)
+
+    outer.get_call_template, outer.get_overload, outer.inner = call, inner.get_overload, inner
+    return outer
 
 
 def callback(signature: str) -> Callable[[Callable[..., Any]], Any]:
     """`numba.cfunc`, for libraries that call back, kept likewise."""
-    return lambda kernel: _kept(cfunc(signature, cache=_FOLDER is not None), kernel)
+    return lambda kernel: _kept(cfunc(signature, cache=FOLDER is not None), kernel)
 
 
-def _kept(compile_it: Callable[..., Any], kernel: Callable[..., Any]) -> Any:
+def _kept(compile_it: Callable[..., Any], kernel: Callable[..., Any], part: str = "") -> Any:
     before = config.CACHE_DIR
-    config.CACHE_DIR = before if _FOLDER is None else str(_FOLDER)
+    config.CACHE_DIR = before if FOLDER is None else str(FOLDER / part)
     try:
         return compile_it(kernel)
     finally:

@@ -1,8 +1,27 @@
 """What tests of several folders share."""
 
+import os
+
 import pytest
 
 from cosim.cli import main
+
+#: before numpy is loaded, for workers too and whatever tests start: threads of linear algebra wait for each other's turn
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+#: commands of tests compile kernels as they come to them; for the whole suite that is done before
+os.environ.setdefault("COSIM_COMPILE_AHEAD", "0")
+
+
+def pytest_sessionstart(session):
+    """Kernels are compiled side by side before the workers of the whole suite start, which would all compile them."""
+    config = session.config
+    whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS
+    if not whole or hasattr(config, "workerinput") or not getattr(config.option, "numprocesses", 0):
+        return
+    from cosim.warming import PARTS, compile_parts, missing
+
+    if parts := missing(list(PARTS)):
+        compile_parts(parts, os.cpu_count() or 1, lambda part: print("compiled", *part, flush=True))
 
 
 @pytest.fixture

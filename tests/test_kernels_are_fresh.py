@@ -7,9 +7,14 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
+import numba
+import numpy as np
 import pytest
+
+from lattice.compiled import compiled
 
 ROOT = Path(__file__).parents[1]
 COPIES = ("lattice", "rubble", "coupling")
@@ -60,6 +65,42 @@ def test_with_numbas_own_cache_it_is_not(tmp_path):
     assert run(package) == 20.0
 
 
+#: `slices.strayed` calls `plates.times`: a plate that is not turned, cut at y = 0, with this anchor
+STRAYED = """
+import numpy as np
+from rubble.plates import empty
+from rubble.slices import CORNERS, Slices, strayed
+
+zero, two, three = np.zeros(1, np.int64), np.zeros((1, CORNERS, 2)), np.zeros((1, CORNERS, 3))
+anchor = np.array([[0.0, 2.0, 0.0]])
+print(strayed(empty(1), Slices(zero, zero, zero, zero, np.zeros(1), anchor, zero, two, two, three), 0))
+"""
+
+
+def copied(tmp_path: Path, code: str) -> Callable[[], float]:
+    """A copy of the rubble in a folder; gives what a new process there prints."""
+    shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
+
+    def run_there() -> float:
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+        return float(done.stdout)
+
+    return run_there
+
+
+def edit(file: Path, before: str, after: str) -> None:
+    text = file.read_text()
+    assert before in text
+    file.write_text(text.replace(before, after))
+
+
+def test_an_edit_in_a_copy_of_the_rubble_reaches_a_kernel_of_another_file(tmp_path):
+    way = copied(tmp_path, STRAYED)
+    assert way() == 2.0
+    edit(tmp_path / "rubble" / "plates.py", "+ m[1, 1] * y", "+ 3.0 * m[1, 1] * y")
+    assert way() == 6.0
+
+
 #: a block that falls through the air for ten sub-steps; what the kick of its weight adds beside the work along its way
 FALL = """
 import numpy as np
@@ -76,21 +117,37 @@ print(energy_terms(layer)["stepping_loss"])
 """
 
 
+@pytest.mark.slow
 def test_an_edit_in_a_copy_of_the_rubble_reaches_the_compiled_loop_that_calls_it(tmp_path):
     """`stepping.advance_substeps`, unchanged, calls `books.book_step`: m (g dt)^2 / 2, then thrice it."""
-    shutil.copytree(ROOT / "rubble", tmp_path / "rubble", ignore=shutil.ignore_patterns("__pycache__"))
-    books = tmp_path / "rubble" / "books.py"
-
-    def stepping() -> float:
-        done = subprocess.run([sys.executable, "-c", FALL], cwd=tmp_path, capture_output=True, text=True, check=True)
-        return float(done.stdout)
-
+    stepping = copied(tmp_path, FALL)
     gain = 10 * (9.81 * 0.005) ** 2 / 2 * 900.0
     assert stepping() == pytest.approx(-gain, rel=1e-9)
-    text = books.read_text()
-    assert "books.stepping += 0.5 * dt * total" in text
-    books.write_text(text.replace("books.stepping += 0.5 * dt * total", "books.stepping += 1.5 * dt * total"))
+    before = "books.stepping += 0.5 * dt * total"
+    edit(tmp_path / "rubble" / "books.py", before, before.replace("0.5", "1.5"))
     assert stepping() == pytest.approx(-3.0 * gain, rel=1e-9)
+
+
+def test_what_a_kernel_is_called_with_by_kernels_is_compiled_once_and_not_for_python():
+    """Numbers that stand in a call are numbers like all; the wrong twin is numba's own, which has a kernel for each."""
+
+    def callee(x, k):
+        return x[k]
+
+    def caller_of(inner):
+        return lambda x: inner(x, 0) + inner(x, 1) + inner(x, len(x) - 1)
+
+    def names(dispatcher):
+        return [str(signature[1]) for signature in dispatcher.signatures]
+
+    ours, numbas = compiled()(callee), numba.njit(callee)
+    x = np.arange(3.0)
+    assert compiled()(caller_of(ours))(x) == numba.njit(caller_of(numbas))(x) == 3.0
+    assert names(ours.inner) == ["int64"]
+    assert names(numbas) == ["Literal[int](0)", "Literal[int](1)", "int64"]
+    assert names(ours) == []
+    assert ours(x, 2) == 2.0
+    assert names(ours) == ["int64"]
 
 
 @pytest.mark.parametrize("package", COPIES)

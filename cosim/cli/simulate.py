@@ -72,6 +72,7 @@ def run(
     from cosim.show.check import fact_lines, judged
     from cosim.show.companion import Companion
     from cosim.show.progress import ProgressBar
+    from cosim.warming import compile_ahead
     from cosim.watched import simulate
 
     loaded = load_scenario(scenario, [*(overrides or ()), *files.overrides])
@@ -90,6 +91,7 @@ def run(
     if files.output is not None:
         observers.append(Recorder(files.output, force=files.force))
         observers += [Companion(files.output)] if files.follow else []
+    compile_ahead(loaded, talk)
     _tell(simulate(loaded, observers, _at_end(files.ice)), files.output, as_json, talk)
 
 

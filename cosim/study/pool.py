@@ -36,7 +36,7 @@ class Processes:
         waiting = deque(tasks)
         while waiting:
             under_way: dict[Future[Row], Task] = {}
-            with suppress(BrokenProcessPool), _pool(min(self.count, len(waiting))) as pool:
+            with suppress(BrokenProcessPool), pool_of(min(self.count, len(waiting))) as pool:
                 while waiting or under_way:
                     while waiting and len(under_way) < self.count:
                         future = pool.submit(work, *waiting[0])
@@ -50,13 +50,13 @@ class Processes:
 
 def _alone(task: Task, work: Work) -> Row:
     for _ in range(TRIES):
-        with suppress(BrokenProcessPool), _pool(1) as pool:
+        with suppress(BrokenProcessPool), pool_of(1) as pool:
             return pool.submit(work, *task).result()
     return {"error": "its process died (no memory, or a signal); run it alone with `cosim run --set ...` to see"}
 
 
 @contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that end with the work: at once if it is broken off, and if this process is killed."""
     context = multiprocessing.get_context("spawn")
     theirs, ours = context.Pipe(duplex=False)

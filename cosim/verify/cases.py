@@ -11,6 +11,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 from cosim.nearest import hint
 from cosim.outputs import whole, writable
 from cosim.verify import (
@@ -103,7 +105,8 @@ def run(
     results = []
     for name in CASES if case is None else [case]:
         module, began = CASES[name], time.perf_counter()
-        results.append(module.run(merged(name, module.PARAMETERS, changes), quick))
+        with threadpool_limits(1):  # small matrices: threads would cost ten times more than they give
+            results.append(module.run(merged(name, module.PARAMETERS, changes), quick))
         if plots_dir is not None:
             save_figures(results[-1], Path(plots_dir))
         done(results[-1], time.perf_counter() - began)
