@@ -39,7 +39,7 @@ class Breaking:
 
     def begin(self, store: Store) -> Loaded:
         """Plates that may break, with what has been summed of their loads."""
-        spans = [(i, p, span_of(p)) for i, p in enumerate(store.list)] if np.isfinite(self.ice.strength) else []
+        spans = [(i, p, p.span) for i, p in enumerate(store.list)] if np.isfinite(self.ice.strength) else []
         found = [(i, p, s) for i, p, s in spans if np.diff(s).max() >= SHORTEST * self.ice.thickness]
         row = np.full(len(store.list) + 1, -1, np.int64)
         row[[i for i, _, _ in found]] = np.arange(len(found))
@@ -65,13 +65,6 @@ class Breaking:
             if worst[0] >= 1.0:
                 found.append((plate, worst))
         return found
-
-
-def span_of(plate: Plate) -> Array:
-    """From where to where a plate reaches along its x and y axes (2, 2) [m]."""
-    x = np.concatenate([p.prism.polygon[:, 0] + p.centre[0] for p in plate.pieces])
-    y = [(p.centre[1] - 0.5 * p.prism.width, p.centre[1] + 0.5 * p.prism.width) for p in plate.pieces]
-    return np.array([(x.min(), x.max()), (np.min(y), np.max(y))])
 
 
 def parts_of(plate: Plate, axis: int, place: float, physics: RubblePhysics) -> list[list[tuple[Prism, Array]]]:
@@ -118,7 +111,7 @@ def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] 
         new[-1].aligned, new[-1].sliding = plate.aligned, plate.sliding
     store.add(*new)
     store.tables.sums[new[0].row] = sums  # of the window that ends: the load of the whole plate
-    lengths = [float(np.diff(span_of(p)[axis])[0]) for p in new]
+    lengths = [float(np.diff(p.span[axis])[0]) for p in new]
     areas = [plan_area(own, store.physics.thickness) for own in prisms]
     return new, Break(cut, (lengths[0], lengths[1]), (areas[0], areas[1]), stress)
 

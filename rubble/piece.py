@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import cos, sin
 
 import numpy as np
@@ -110,12 +111,24 @@ class Plate:
         """Of its x axis, from x towards z, seen in the x-z plane [rad]."""
         return float(np.arctan2(self.rotation[2, 0], self.rotation[0, 0]))
 
+    @cached_property
+    def span(self) -> Array:
+        """From where to where it reaches along its x and y axes (2, 2) [m]."""
+        x = np.concatenate([p.prism.polygon[:, 0] + p.centre[0] for p in self.pieces])
+        y = [(p.centre[1] - 0.5 * p.prism.width, p.centre[1] + 0.5 * p.prism.width) for p in self.pieces]
+        return np.array([(x.min(), x.max()), (np.min(y), np.max(y))])
+
+    @cached_property
+    def middle(self) -> Array:
+        """(k, 3) corners of the outline of its middle piece, in its axes [m]."""
+        piece = min(self.pieces, key=lambda p: abs(p.centre[1]))
+        corners: Array = np.insert(piece.prism.polygon, 1, 0.0, axis=1) + piece.centre
+        return corners
+
     @property
     def outline(self) -> Array:
         """(k, 2) corners of its middle piece in world x, z [m]."""
-        piece = min(self.pieces, key=lambda p: abs(p.centre[1]))
-        corners = np.insert(piece.prism.polygon, 1, 0.0, axis=1) + piece.centre
-        found: Array = (self.position + corners @ self.rotation.T)[:, ::2]
+        found: Array = (self.position + self.middle @ self.rotation.T)[:, ::2]
         return np.ascontiguousarray(found)
 
 

@@ -23,7 +23,9 @@ def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict
     """
     plates, list_ = store.plates, store.list
     n = len(list_)
-    outlines = [p.outline for p in list_]
+    lengths = np.array([len(p.middle) for p in list_], np.int64)
+    owner, corners = np.repeat(np.arange(n), lengths), np.concatenate([np.zeros((0, 3)), *(p.middle for p in list_)])
+    outlines = plates.position[owner] + np.einsum("vij,vj->vi", plates.rotation[owner], corners)
     return {
         "id": np.array([p.id for p in list_], np.int64),
         "section": np.array([key_at(float(p.position[1])) for p in list_], np.int64),
@@ -38,8 +40,8 @@ def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict
         "omega": -plates.velocity[:n, 4],
         "load": loads(store, window),
         "bearing": contact_centres(store),
-        "outline": np.concatenate([np.zeros((0, 2)), *outlines]),
-        "offset": np.cumsum([0, *map(len, outlines)], dtype=np.int64),
+        "outline": np.ascontiguousarray(outlines[:, ::2]),
+        "offset": np.concatenate([[0], np.cumsum(lengths)]),
     }
 
 

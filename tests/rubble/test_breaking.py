@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rubble.bending import CELLS, Ice, Loaded, judge, put
-from rubble.breaking import part, span_of
+from rubble.breaking import part
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Start, prism_at
@@ -81,7 +81,7 @@ def test_a_free_plate_that_is_hit_at_its_end_is_bent_by_its_inertia(axis):
     force = 1e4
     ice = Ice(RHO_I, H, SIGMA, 0.0, 0.0)
     stress, cut, place = judge(
-        plate.row, 0, rubble.store.plates, rubble.store.tables.pieces, loaded(span_of(plate), [(*at, force)]), 1.0, ice
+        plate.row, 0, rubble.store.plates, rubble.store.tables.pieces, loaded(plate.span, [(*at, force)]), 1.0, ice
     )
     assert cut == axis
     assert place == pytest.approx(-L / 2 + L / 3, rel=1e-9)
@@ -95,7 +95,7 @@ def test_thrust_closes_a_crack():
     rubble = layer()
     plate = rubble.block(float_plate(rubble))
     ice = Ice(RHO_I, H, SIGMA, 0.0, 0.0)
-    bent = loaded(span_of(plate), [(-L / 2, 0.0, 1e4), (0.0, 0.0, -2e4), (L / 2, 0.0, 1e4)])
+    bent = loaded(plate.span, [(-L / 2, 0.0, 1e4), (0.0, 0.0, -2e4), (L / 2, 0.0, 1e4)])
     tables = rubble.store.plates, rubble.store.tables.pieces
     stress = judge(plate.row, 0, *tables, bent, 1.0, ice)[0]
     assert stress * SIGMA == pytest.approx(6 * (1e4 * L / 2) / (B * H**2), rel=1e-9)
