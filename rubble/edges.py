@@ -101,6 +101,7 @@ def deeper_on_sheet(edges: Edges, section: int, point: Record, nx: float, nz: fl
     nodes, first = edges.nodes, edges.offset[section]
     locate(point, nodes, first, edges.offset[section + 1])
     foremost, f, r, w = nodes[first], nodes[point.front], nodes[point.rear], point.weight
-    x = w * (f.x - f.outline_x) + (1.0 - w) * (r.x - r.outline_x) - foremost.x
-    z = w * (f.z - f.outline_z) + (1.0 - w) * (r.z - r.outline_z) - foremost.z
+    front, rear = f.z - f.outline_z, r.z - r.outline_z
+    x = w * (f.x - f.outline_x) + (1.0 - w) * (r.x - r.outline_x) - foremost.x + point.lever * (front - rear)
+    z = w * front + (1.0 - w) * rear - foremost.z
     return float(x * nx + z * nz)

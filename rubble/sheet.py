@@ -148,10 +148,15 @@ def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance
 
 @compiled("float64[:, :, ::1](float64[:, ::1], float64, float64)", nogil=True)
 def _pieces(line: Array, half: float, tolerance: float) -> Array:
-    """The straight pieces of a line (n, 2) with x decreasing, as counter-clockwise quadrangles of thickness 2 half."""
-    out = np.empty((line.shape[0] - 1, 4, 2))
-    count = start = 0
-    while start < line.shape[0] - 1:
+    """The straight pieces of a line (n, 2) with x decreasing, as counter-clockwise quadrangles of thickness 2 half.
+
+    Sections of the plate stay plane and turn with it: a corner at the height ``above`` the line stands at
+    ``x - above slope``, with the mean slope where two pieces meet.
+    """
+    joints = np.zeros(line.shape[0], np.int64)
+    count = 0
+    while joints[count] < line.shape[0] - 1:
+        start = joints[count]
         end, fits = start + 1, True
         while fits and end + 1 < line.shape[0]:
             slope = (line[end + 1, 1] - line[start, 1]) / (line[end + 1, 0] - line[start, 0])
@@ -160,8 +165,16 @@ def _pieces(line: Array, half: float, tolerance: float) -> Array:
                 fits = fits and abs(off) <= tolerance
             if fits:
                 end += 1
+        count += 1
+        joints[count] = end
+    lean, out = np.zeros(count + 1), np.empty((count, 4, 2))
+    for p in range(count):
+        a, b = joints[p], joints[p + 1]
+        slope = (line[b, 1] - line[a, 1]) / (line[b, 0] - line[a, 0])
+        lean[p] += slope if p == 0 else 0.5 * slope
+        lean[p + 1] += slope if p == count - 1 else 0.5 * slope
+    for p in range(count):
         for c in range(4):
-            at, above = (end if c in (0, 3) else start), (-half if c < 2 else half)
-            out[count, c, 0], out[count, c, 1] = line[at, 0], line[at, 1] + above
-        count, start = count + 1, end
-    return out[:count].copy()
+            j, above = (p + 1 if c in (0, 3) else p), (-half if c < 2 else half)
+            out[p, c, 0], out[p, c, 1] = line[joints[j], 0] - above * lean[j], line[joints[j], 1] + above
+    return out
