@@ -6,12 +6,13 @@ import pytest
 
 from cosim.cli import main
 
-#: before numpy is loaded, for workers too and whatever tests start: threads of linear algebra wait for each other's turn
+#: before numpy is loaded, for workers and what tests start too: threads of linear algebra wait for each other's turn
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 #: commands of tests compile kernels as they come to them; for the whole suite that is done before
 os.environ.setdefault("COSIM_COMPILE_AHEAD", "0")
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_sessionstart(session):
     """Kernels are compiled side by side before the workers of the whole suite start, which would all compile them."""
     config = session.config

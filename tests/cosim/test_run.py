@@ -1,6 +1,7 @@
 """The whole chain on a small floe with coarse cells: it breaks, pieces become blocks, blocks load the structure."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -98,7 +99,7 @@ def test_the_energy_closes_with_other_settings(setting):
 
 
 def test_same_scenario_same_bits(tmp_path):
-    """Two processes write the same file."""
+    """Two processes write the same file, with one thread of linear algebra and with two."""
     files = []
     for k in (1, 2):
         out = tmp_path / f"{k}.mcap"
@@ -118,6 +119,7 @@ def test_same_scenario_same_bits(tmp_path):
             capture_output=True,
             text=True,
             check=True,
+            env={**os.environ, "OPENBLAS_NUM_THREADS": str(k)},
         )
         assert json.loads(done.stdout)["simulated_s"] == 3.0
         files.append(out.read_bytes())
