@@ -25,7 +25,7 @@ from lattice.cracks.cells import (
     resultants,
     times,
 )
-from lattice.cracks.kinematics import Edges, Hourglass, Strain
+from lattice.cracks.kinematics import Edges, Hourglass, Pose, Strain
 from lattice.explicit.layout import LANES, PHI_X, PHI_Y, U_X, U_Y, W
 from lattice.grid import Array, IntArray
 
@@ -93,6 +93,13 @@ def elongations_in(at: int, half: float, room: Array) -> Edges:
         room[w + 2 * L] - room[w] + half * (room[y] + room[y + 2 * L]),
         room[w + 3 * L] - room[w + L] + half * (room[y + L] + room[y + 3 * L]),
     )
+
+
+@compiled(inline="always")
+def pose_in(at: int, d: float, room: Array) -> Pose:
+    """As `kinematics.pose_of`, of the nodes at ``at``."""
+    strain, _ = strain_in(at, 0.5 / d, room)
+    return Pose(strain, elongations_in(at, 0.5 * d, room))
 
 
 @compiled(nogil=True)

@@ -17,7 +17,7 @@ from __future__ import annotations
 from lattice.compiled import compiled
 from lattice.cracks.cells import TURNING
 from lattice.cracks.kinematics import gradients
-from lattice.cracks.motion import Layered, Nodes, look_at_layered
+from lattice.cracks.motion import Layered, Nodes, dot, look_at_layered
 from lattice.explicit.layout import LANES, LINE, U_X, U_Y, Motion, W
 from lattice.explicit.screen import Screen, membrane_sums, reached
 from lattice.grid import Array
@@ -151,15 +151,6 @@ def look_at_cells(nodes: Nodes, intact: Array, layered: Layered) -> None:
             for n in range(lean.shape[1]):
                 force[c, n] += lean[c, n]
     layered.cells.losses[TURNING] -= layered.plate.d**2 * gained
-
-
-@compiled(nogil=True, fastmath={"reassoc"})
-def dot(x: Array, y: Array) -> float:
-    """Sum of products in the order in which vectors have them: the same bits in every run, six times as fast."""
-    total = 0.0
-    for n in range(len(x)):
-        total += x[n] * y[n]
-    return total
 
 
 @compiled(nogil=True)
