@@ -55,6 +55,29 @@ def fetch(line: int, corner: IntArray, my: int, y: Array, room: Array) -> None:
 
 
 @compiled(nogil=True)
+def fetch_lean(corner: IntArray, strain: Array, room: Array) -> None:
+    """Strains (3, nodes) from slopes of up to `LANES` cells, those before and, until they are known, those now."""
+    for lane in range(len(corner)):
+        b = corner[lane]
+        for i in range(3):
+            room[OLD + i * L + lane] = room[NEW + i * L + lane] = strain[i, b]
+
+
+@compiled(nogil=True)
+def put_lean(corner: IntArray, room: Array, strain: Array, pull: Array) -> float:
+    """Slopes of up to `LANES` cells to their places; the energy that these have given, over d^2 [J/m2]."""
+    gained = 0.0
+    for lane in range(len(corner)):
+        b = corner[lane]
+        gained += room[GAINED + lane]
+        for i in range(3):
+            strain[i, b] = room[NEW + i * L + lane]
+        for i in range(2):
+            pull[i, b] = room[PULL + i * L + lane]
+    return gained
+
+
+@compiled(nogil=True)
 def add_forces(corner: IntArray, my: int, room: Array, force: Array) -> None:
     """Adds the forces of up to `LANES` cells to those on the nodes, (5, nodes)."""
     for lane in range(len(corner)):

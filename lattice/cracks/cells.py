@@ -146,7 +146,8 @@ def tangent_energy(at: int, e: Strain, linear: Array) -> float:
     """Energy of the linear cell per area at a strain, without its constant [J/m2]."""
     f, n, m = forces(at, e, linear), offsets(OFFSET, at, linear), offsets(TURN, at, linear)
     E: float = (n[0] + 0.5 * f[0]) * e.n + (n[1] + 0.5 * f[1]) * e.t + (n[2] + 0.5 * f[2]) * e.g
-    return E + (m[0] + 0.5 * f[3]) * e.kn + (m[1] + 0.5 * f[4]) * e.kt + (m[2] + 0.5 * f[5]) * e.kg
+    E += (m[0] + 0.5 * f[3]) * e.kn + (m[1] + 0.5 * f[4]) * e.kt + (m[2] + 0.5 * f[5]) * e.kg
+    return E
 
 
 @compiled(inline="always")

@@ -8,21 +8,19 @@ import numpy as np
 
 from lattice.compiled import compiled
 from lattice.cracks.blocks import (
-    GAINED,
-    NEW,
-    OLD,
-    PULL,
     SAYS,
     V,
     Y,
     add_forces,
     fetch,
     fetch_cells,
+    fetch_lean,
     force_block,
     lean_block,
     moved,
     pose_in,
     power_block,
+    put_lean,
 )
 from lattice.cracks.cells import (
     FAR,
@@ -106,47 +104,23 @@ def ask_moved(first: int, end: int, times: tuple[float, float], layered: Layered
 
 
 @compiled(nogil=True)
-def put_lean(first: int, end: int, layered: Layered) -> float:
-    """Slopes of cells from a block to their places; the energy that these have given, over d^2 [J/m2]."""
-    room, lean, gained = layered.nodes.room, layered.lean, 0.0
-    for k in range(first, end):
-        b, lane = layered.cells.corner[k], k - first
-        gained += room[GAINED + lane]
-        for i in range(3):
-            lean.strain[i, b] = room[NEW + i * LANES + lane]
-        for i in range(2):
-            lean.pull[i, b] = room[PULL + i * LANES + lane]
-    return gained
-
-
-@compiled(nogil=True)
-def fetch_lean(first: int, end: int, layered: Layered) -> None:
-    """Strains from slopes into the room of a block, those before and, until they are known, those now."""
-    room, strain = layered.nodes.room, layered.lean.strain
-    for k in range(first, end):
-        b, lane = layered.cells.corner[k], k - first
-        for i in range(3):
-            room[OLD + i * LANES + lane] = room[NEW + i * LANES + lane] = strain[i, b]
-
-
-@compiled(nogil=True)
 def look_at_layered(nodes: Nodes, layered: Layered) -> float:
     """New slopes of layered cells, their law where their strain has moved, and their forces, added on the nodes.
 
     Returns the energy that the slopes have given, over d^2 [J/m2].
     """
     cracks, room, d, my = layered.cells, layered.nodes.room, layered.plate.d, nodes.my
-    q, ago, gained = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0
+    q, ago, gained, lean = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0, layered.lean
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, room)
         fetch(Y, corner, my, nodes.y, room)
-        fetch_lean(first, end, layered)
+        fetch_lean(corner, lean.strain, room)
         fetch(V, corner, my, nodes.v, room)
         if layered.leans:
             lean_block(q, nodes.alpha, ago, room)
-            gained += put_lean(first, end, layered)
+            gained += put_lean(corner, room, lean.strain, lean.pull)
         if moved(q, room) > 0:
             ask_moved(first, end, (nodes.alpha, nodes.dt), layered)
         force_block(d, room)
@@ -165,7 +139,7 @@ def crack_forces(my: int, y: Array, layered: Layered) -> None:
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, on.room)
         fetch(Y, corner, my, y, on.room)
-        fetch_lean(first, end, layered)
+        fetch_lean(corner, layered.lean.strain, on.room)
         force_block(layered.plate.d, on.room)
         add_forces(corner, my, on.room, on.force)
 
@@ -212,7 +186,8 @@ def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
 @compiled(nogil=True)
 def pull_on_held(held: Array, force: Array) -> float:
     """Force along x that nodes with ``held`` (places,) 1 need against the forces (5, places) [N]."""
-    return -dot(held, force[U_X])
+    total: float = dot(held, force[U_X])
+    return -total
 
 
 @compiled(nogil=True)
