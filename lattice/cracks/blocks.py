@@ -25,7 +25,7 @@ from lattice.cracks.cells import (
     resultants,
     times,
 )
-from lattice.cracks.kinematics import Edges, Hourglass, Strain
+from lattice.cracks.kinematics import Edges, Hourglass, Pose, Strain
 from lattice.explicit.layout import LANES, PHI_X, PHI_Y, U_X, U_Y, W
 from lattice.grid import Array, IntArray
 
@@ -52,6 +52,29 @@ def fetch(line: int, corner: IntArray, my: int, y: Array, room: Array) -> None:
         for c in range(5):
             room[at + (4 * c) * L], room[at + (4 * c + 1) * L] = y[c, b], y[c, b + my]
             room[at + (4 * c + 2) * L], room[at + (4 * c + 3) * L] = y[c, b + 1], y[c, b + my + 1]
+
+
+@compiled(nogil=True)
+def fetch_lean(corner: IntArray, strain: Array, room: Array) -> None:
+    """Strains (3, nodes) from slopes of up to `LANES` cells, those before and, until they are known, those now."""
+    for lane in range(len(corner)):
+        b = corner[lane]
+        for i in range(3):
+            room[OLD + i * L + lane] = room[NEW + i * L + lane] = strain[i, b]
+
+
+@compiled(nogil=True)
+def put_lean(corner: IntArray, room: Array, strain: Array, pull: Array) -> float:
+    """Slopes of up to `LANES` cells to their places; the energy that these have given, over d^2 [J/m2]."""
+    gained = 0.0
+    for lane in range(len(corner)):
+        b = corner[lane]
+        gained += room[GAINED + lane]
+        for i in range(3):
+            strain[i, b] = room[NEW + i * L + lane]
+        for i in range(2):
+            pull[i, b] = room[PULL + i * L + lane]
+    return gained
 
 
 @compiled(nogil=True)
@@ -93,6 +116,13 @@ def elongations_in(at: int, half: float, room: Array) -> Edges:
         room[w + 2 * L] - room[w] + half * (room[y] + room[y + 2 * L]),
         room[w + 3 * L] - room[w + L] + half * (room[y + L] + room[y + 3 * L]),
     )
+
+
+@compiled(inline="always")
+def pose_in(at: int, d: float, room: Array) -> Pose:
+    """As `kinematics.pose_of`, of the nodes at ``at``."""
+    strain, _ = strain_in(at, 0.5 / d, room)
+    return Pose(strain, elongations_in(at, 0.5 * d, room))
 
 
 @compiled(nogil=True)

@@ -20,7 +20,7 @@ import numpy as np
 from lattice.compiled import compiled
 from lattice.cracks.kinematics import Edges, Strain
 from lattice.cracks.law import Local
-from lattice.cracks.layers import LAYERS, STACK
+from lattice.cracks.layers import HISTORY, LAYERS, ROW, SLIP, STACK
 from lattice.explicit.layout import LANES, aligned
 from lattice.grid import Array, IntArray
 
@@ -65,15 +65,24 @@ class Cracks(NamedTuple):
     cell: IntArray  #: (m,) number of the cell
     corner: IntArray  #: (m,) place of its node 0 in a padded row-by-row array
     axis: Array  #: (2, m) cosine and sine of the direction n
-    damage: Array  #: (m, LAYERS, 2) of each layer across n and t, 0 to 1
-    crushed: Array  #: (m, LAYERS, 2) strain of crushing
-    slip: Array  #: (m, LAYERS) plastic shear strain
+    history: Array  #: (m, HISTORY) of the layers, lines as in `layers`
     shear_slip: Array  #: (m, 4) slip of the edge springs [m]
     thrust: Array  #: (m, 2) sum of the compression across n and t [N/m]
     constant: Array  #: (m,) energy by which the tangent's differs from what is stored [J]
     linear: Array  #: (m / LANES * BLOCK,) `MEMBRANE` ... of `LANES` cells, then of the next [N/m], [N], [N m]
     losses: Array  #: (5,) `CRACKING` ...: sums over all cells [J]
     stack: Array  #: (STACK,) room for the layers of a cell
+
+    @property
+    def damage(self) -> Array:
+        """Of each layer across n and t, 0 to 1, (m, LAYERS, 2); what is written here is kept."""
+        lines: Array = self.history.reshape(len(self.cell), -1, ROW)[:, :2, :LAYERS].swapaxes(1, 2)
+        return lines
+
+    @property
+    def slip(self) -> Array:
+        """Plastic shear strain, (m, LAYERS)."""
+        return self.history[:, SLIP : SLIP + LAYERS]
 
 
 def room_for(m: int) -> Cracks:
@@ -83,9 +92,7 @@ def room_for(m: int) -> Cracks:
         cell=zeros(m, np.int64),
         corner=zeros(m, np.int64),
         axis=zeros((2, m)),
-        damage=zeros((m, LAYERS, 2)),
-        crushed=zeros((m, LAYERS, 2)),
-        slip=zeros((m, LAYERS)),
+        history=aligned(m, HISTORY),
         shear_slip=zeros((m, 4)),
         thrust=zeros((m, 2)),
         constant=zeros(m),
@@ -139,7 +146,8 @@ def tangent_energy(at: int, e: Strain, linear: Array) -> float:
     """Energy of the linear cell per area at a strain, without its constant [J/m2]."""
     f, n, m = forces(at, e, linear), offsets(OFFSET, at, linear), offsets(TURN, at, linear)
     E: float = (n[0] + 0.5 * f[0]) * e.n + (n[1] + 0.5 * f[1]) * e.t + (n[2] + 0.5 * f[2]) * e.g
-    return E + (m[0] + 0.5 * f[3]) * e.kn + (m[1] + 0.5 * f[4]) * e.kt + (m[2] + 0.5 * f[5]) * e.kg
+    E += (m[0] + 0.5 * f[3]) * e.kn + (m[1] + 0.5 * f[4]) * e.kt + (m[2] + 0.5 * f[5]) * e.kg
+    return E
 
 
 @compiled(inline="always")

@@ -89,8 +89,7 @@ class CrackingEngine(ExplicitEngine):
 
     def _nodes(self) -> Nodes:
         y, v = (a.reshape(5, -1) for a in self.motion)
-        x, way = (a.reshape(5, -1) for a in self.mesh.scratch)
-        return Nodes(y, v, x, way, self.motion.y.shape[2], self.alpha, self.dt)
+        return Nodes(y, v, self.motion.y.shape[2], self.alpha, self.dt)
 
     def book_pull(self, time: float) -> None:
         """Books the work of slopes at the present velocity for a time [s]."""

@@ -29,9 +29,9 @@ from lattice.cracks.cells import (
     resultants,
     tangent_energy,
 )
-from lattice.cracks.kinematics import Edges, Strain, elongations, leaned, strain_of, turned, turned_back
+from lattice.cracks.kinematics import Edges, Pose, Strain, leaned, pose_of, turned, turned_back
 from lattice.cracks.law import CrackLaw, N, T
-from lattice.cracks.layers import D_N, D_T, LAYERS, P_N, P_T, SLIP, Answer, Tangent, follow_all, sums
+from lattice.cracks.layers import HISTORY, Answer, Tangent, follow_all, sums
 from lattice.explicit.layout import LANES
 from lattice.grid import Array
 
@@ -62,23 +62,21 @@ def tangent_in_sheet(t: Tangent, c: float, s: float) -> Resultants:
     )
 
 
-@compiled(nogil=True, error_model="numpy")
+@compiled(inline="always")
 def answer(k: int, e: Strain, h: float, law: CrackLaw, cracks: Cracks) -> Answer:
     """Of the layers of cell k at a strain in the axes of its crack; their states go on."""
-    stack, damage, crushed, slip = cracks.stack, cracks.damage, cracks.crushed, cracks.slip
-    for i in range(LAYERS):
-        stack[D_N + i], stack[D_T + i] = damage[k, i, N], damage[k, i, T]
-        stack[P_N + i], stack[P_T + i], stack[SLIP + i] = crushed[k, i, N], crushed[k, i, T], slip[k, i]
+    stack, history = cracks.stack, cracks.history
+    for i in range(HISTORY):
+        stack[i] = history[k, i]
     follow_all(e, h, law, stack)
-    for i in range(LAYERS):
-        damage[k, i, N], damage[k, i, T] = stack[D_N + i], stack[D_T + i]
-        crushed[k, i, N], crushed[k, i, T], slip[k, i] = stack[P_N + i], stack[P_T + i], stack[SLIP + i]
+    for i in range(HISTORY):
+        history[k, i] = stack[i]
     a: Answer = sums(h, law, stack)
     cracks.thrust[k, N], cracks.thrust[k, T] = a.thrust
     return a
 
 
-@compiled(nogil=True)
+@compiled(inline="always")
 def renew_tangent(at: int, e: Strain, axis: tuple[float, float], a: Answer, linear: Array) -> Resultants:
     """Tangent and offset of the cell at ``at`` from the answer at a strain; its N and M, in the axes of the sheet."""
     c, s = axis
@@ -92,7 +90,7 @@ def renew_tangent(at: int, e: Strain, axis: tuple[float, float], a: Answer, line
     return n[0], n[1], n[2], m[0], m[1], m[2]
 
 
-@compiled(nogil=True, error_model="numpy")
+@compiled(inline="always")
 def slide(k: int, long: Edges, limit: float, plate: Plate, cracks: Cracks) -> tuple[float, float]:
     """New tangent of the edge springs, whose force is at most ``limit`` [N]; what they store, and slip took [J]."""
     stored, rubbing, at, soft = 0.0, 0.0, place(k), 1.0 / plate.shear
@@ -114,36 +112,44 @@ def work(f: Resultants, e: Strain) -> float:
     return f[0] * e.n + f[1] * e.t + f[2] * e.g + f[3] * e.kn + f[4] * e.kt + f[5] * e.kg
 
 
-@compiled(nogil=True, error_model="numpy")
-def evaluate(k: int, x: Array, way: Array, my: int, plate: Plate, law: CrackLaw, cracks: Cracks, lean: Array) -> float:
-    """Evaluates the law in cell k at the displacements x (5, nodes); the cell goes on with a new tangent.
+@compiled(inline="always")
+def renew_cell(k: int, here: Pose, way: Pose, plate: Plate, law: CrackLaw, cracks: Cracks) -> float:
+    """Evaluates the law in cell k, which goes on with a new tangent; returns the energy that it stores [J].
 
-    ``lean`` (3, nodes) are strains from slopes; ``way`` (5, nodes) is how far the nodes have come in the last sub-step.
-    What leapfrog conserves has x of this and of the last sub-step in its elastic energy, so a force that changes by df
-    takes df . way / 2 beside the energy at x. Returns the energy that the cell stores [J].
+    ``way`` is how far the nodes have come in the last sub-step. What leapfrog conserves has x of this and of the last
+    sub-step in its elastic energy, so a force that changes by df takes df . way / 2 beside the energy at x.
     """
-    d, q, at, linear = plate.d, 0.5 / plate.d, place(k), cracks.linear
-    b, c, s, area = cracks.corner[k], cracks.axis[0, k], cracks.axis[1, k], plate.d * plate.d
-    in_sheet, _ = strain_of(b, my, q, x)
-    e, long = leaned(in_sheet, b, lean), elongations(b, my, 0.5 * d, x)
+    at, linear, area, (e, long) = place(k), cracks.linear, plate.d * plate.d, here
+    c, s = cracks.axis[0, k], cracks.axis[1, k]
     before = edge_energy(at, long, cracks.constant[k] + area * tangent_energy(at, e, linear), linear)
     old, was = resultants(at, e, linear), edge_forces(at, long, linear)
     a = answer(k, turned(e, c, s), plate.h, law, cracks)
     new = renew_tangent(at, e, (c, s), a, linear)
-    on_edges, rubbing = slide(k, long, 0.5 * d * a.limit, plate, cracks)
+    on_edges, rubbing = slide(k, long, 0.5 * plate.d * a.limit, plate, cracks)
     write(FACE, at, (0.5 * plate.h,), linear)
     write(SKEW, at, (plate.hourglass,), linear)
     write(SKEW_TURN, at, (plate.hourglass * plate.h * plate.h / 12.0,), linear)
     stored: float = area * a.stored + on_edges
     cracks.constant[k] = stored - edge_energy(at, long, area * tangent_energy(at, e, linear), linear)
-    de, _ = strain_of(b, my, q, way)
-    before += 0.5 * area * (work(new, de) - work(old, de))
-    more, now = elongations(b, my, 0.5 * d, way), edge_forces(at, long, linear)
+    before += 0.5 * area * (work(new, way.strain) - work(old, way.strain))
+    now = edge_forces(at, long, linear)
     for i in range(4):
-        before += 0.5 * (now[i] - was[i]) * more[i]
+        before += 0.5 * (now[i] - was[i]) * way.long[i]
     lost, rubbing = cracks.losses, area * a.rubbing + rubbing
     lost[CRACKING] += area * a.cracking
     lost[CRUSHING] += area * a.crushing
     lost[RUBBING] += rubbing
     lost[SWITCHING] += before - stored - area * (a.cracking + a.crushing) - rubbing
+    return stored
+
+
+@compiled(nogil=True, error_model="numpy")
+def evaluate(k: int, x: Array, way: Array, my: int, plate: Plate, law: CrackLaw, cracks: Cracks, lean: Array) -> float:
+    """As `renew_cell`, at the displacements x and with the ``way`` of the nodes, (5, nodes).
+
+    ``lean`` (3, nodes) are strains from slopes.
+    """
+    b = cracks.corner[k]
+    here, gone = pose_of(b, my, plate.d, x), pose_of(b, my, plate.d, way)
+    stored: float = renew_cell(k, Pose(leaned(here.strain, b, lean), here.long), gone, plate, law, cracks)
     return stored

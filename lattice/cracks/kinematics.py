@@ -26,6 +26,13 @@ class Strain(NamedTuple):
     kg: float  #: [1/m]
 
 
+class Pose(NamedTuple):
+    """Where the nodes of a cell are, as its law asks, or how fast they go."""
+
+    strain: Strain  #: in the axes of the sheet
+    long: Edges  #: elongations of the edge springs [m]
+
+
 class Hourglass(NamedTuple):
     """The modes of a cell's nodes without mean strain, over 2 d, of u_x, u_y [-] and phi_x, phi_y [1/m]."""
 
@@ -90,3 +97,19 @@ def elongations(b: int, my: int, half: float, y: Array) -> Edges:
         w2 - w0 + half * (py[b] + py[b + 1]),
         w3 - w1 + half * (py[b + my] + py[b + my + 1]),
     )
+
+
+@compiled(inline="always")
+def pose_of(b: int, my: int, d: float, y: Array) -> Pose:
+    """Of the cell at b, of size d [m], at the displacements y (5, nodes)."""
+    strain, _ = strain_of(b, my, 0.5 / d, y)
+    return Pose(strain, elongations(b, my, 0.5 * d, y))
+
+
+@compiled(inline="always")
+def plus(a: Pose, t: float, b: Pose) -> Pose:
+    """A + t b."""
+    (n, t_, g, kn, kt, kg), (i, j, k, m) = a.strain, a.long
+    e, long = b.strain, b.long
+    strain = Strain(n + t * e.n, t_ + t * e.t, g + t * e.g, kn + t * e.kn, kt + t * e.kt, kg + t * e.kg)
+    return Pose(strain, (i + t * long[0], j + t * long[1], k + t * long[2], m + t * long[3]))

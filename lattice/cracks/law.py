@@ -220,6 +220,7 @@ def follow(eps_n: float, eps_t: float, gamma: float, was: History, law: CrackLaw
 @compiled(error_model="numpy")
 def layer(eps_n: float, eps_t: float, gamma: float, damage: Array, crushed: Array, slip: float, law: CrackLaw) -> Layer:
     """A layer at these strains. ``damage`` and ``crushed`` (2,) for n and t are its states, which follow in place."""
+    out: Layer
     out, now = follow(eps_n, eps_t, gamma, History(damage[N], damage[T], crushed[N], crushed[T], slip), law)
     damage[N], damage[T], crushed[N], crushed[T] = now.D_n, now.D_t, now.p_n, now.p_t
     return out

@@ -36,7 +36,7 @@ HEIGHT, SHARE = (np.array([*values, *[0.0] * (ROW - LAYERS)]) for values in (POI
 D_N, D_T, P_N, P_T, SLIP, S_N, S_T, TAU, T_NN, T_NT, T_TT, T_GG, STORED, CRACK, CRUSH, RUB = (
     k * ROW for k in range(16)
 )
-STACK = 16 * ROW  #: length of the flat array
+HISTORY, STACK = 5 * ROW, 16 * ROW  #: length of what is kept, which comes first, and of the flat array
 
 
 class Tangent(NamedTuple):

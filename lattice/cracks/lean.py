@@ -14,10 +14,12 @@ differ is booked as ``turning``.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from lattice.compiled import compiled
 from lattice.cracks.cells import TURNING
 from lattice.cracks.kinematics import gradients
-from lattice.cracks.motion import Layered, Nodes, look_at_layered
+from lattice.cracks.motion import Layered, Nodes, dot, look_at_layered
 from lattice.explicit.layout import LANES, LINE, U_X, U_Y, Motion, W
 from lattice.explicit.screen import Screen, membrane_sums, reached
 from lattice.grid import Array
@@ -55,15 +57,23 @@ def membrane_strain(i: int, j: int, q: float, y: Array) -> Membrane:
     return xx, yy, xy + yx
 
 
-@compiled(nogil=True, error_model="numpy")
-def lean_row(i: int, motion: Motion, pace: tuple[float, float], intact: Array, layered: Layered) -> None:
-    """New slopes of the elastic cells of row i, into ``OnNodes.rows``; ``pace`` is alpha and the sub-step [s].
+class Constants(NamedTuple):
+    """What a row of elastic cells needs beside its nodes."""
+
+    stiffness: Membrane
+    alpha: float  #: material damping [s]
+    ago: float  #: alpha and half a sub-step [s]
+    q: float  #: 1 / 2 d [1/m]
+
+
+@compiled(nogil=True)
+def lean_row(i: int, motion: Motion, intact: Array, was: Array, constants: Constants, rows: Array) -> None:
+    """New slopes of the elastic cells of row i, into ``rows``, with the strains ``was`` (3, rows, my) before.
 
     The energy that they gain is that of the strain half a sub-step ago, where leapfrog has a potential that is linear
     in the displacements. It is added to what the rows before have.
     """
-    (y, v), (alpha, dt), q, rows = motion, pace, 0.5 / layered.plate.d, layered.nodes.rows
-    S, ago, was = membrane_stiffness(layered), alpha + 0.5 * dt, layered.lean.strain.reshape(3, y.shape[1], y.shape[2])
+    (y, v), (S, alpha, ago, q) = motion, constants
     for j in range(y.shape[2] - LANES):
         on = intact[i + 1, j + 1]
         (y_x, y_y, y_s), (v_x, v_y, v_s) = membrane_strain(i, j, q, y), membrane_strain(i, j, q, v)
@@ -85,10 +95,16 @@ def lean_row(i: int, motion: Motion, pace: tuple[float, float], intact: Array, l
 
 
 @compiled(nogil=True)
-def copy(line: int, rows: Array, to: Array) -> None:
-    """A line to its place."""
-    for j in range(len(to)):
-        to[j] = rows[line + j]
+def keep_row(start: int, n: int, rows: Array, strain: Array, stress: Array, pull: Array) -> None:
+    """What `lean_row` has found to the n places from ``start`` on."""
+    for c in range(3):
+        for j in range(n):
+            strain[c, start + j] = rows[G_X + c * LINE + j]
+        for j in range(n):
+            stress[c, start + j] = rows[T_X + c * LINE + j]
+    for c in range(2):
+        for j in range(n):
+            pull[c, start + j] = rows[P_X + c * LINE + j]
 
 
 @compiled(nogil=True)
@@ -97,15 +113,12 @@ def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> float:
     my, lean, rows, gained = nodes.my, layered.lean, layered.nodes.rows, 0.0
     high, n = intact.shape[0] // my, my - LANES
     motion, plane = Motion(nodes.y.reshape(5, high, my), nodes.v.reshape(5, high, my)), intact.reshape(high, my)
+    was, q = lean.strain.reshape(3, high, my), 0.5 / layered.plate.d
+    constants = Constants(membrane_stiffness(layered), nodes.alpha, nodes.alpha + 0.5 * nodes.dt, q)
     rows[GAIN : GAIN + n] = 0.0
     for i in range(high - 1):
-        lean_row(i, motion, (nodes.alpha, nodes.dt), plane, layered)
-        start = i * my
-        for c in range(3):
-            copy(G_X + c * LINE, rows, lean.strain[c, start : start + n])
-            copy(T_X + c * LINE, rows, lean.stress[c, start : start + n])
-        for c in range(2):
-            copy(P_X + c * LINE, rows, lean.pull[c, start : start + n])
+        lean_row(i, motion, plane, was, constants, rows)
+        keep_row(i * my, n, rows, lean.strain, lean.stress, lean.pull)
     for j in range(n):
         gained += rows[GAIN + j]
     return gained
@@ -151,15 +164,6 @@ def look_at_cells(nodes: Nodes, intact: Array, layered: Layered) -> None:
             for n in range(lean.shape[1]):
                 force[c, n] += lean[c, n]
     layered.cells.losses[TURNING] -= layered.plate.d**2 * gained
-
-
-@compiled(nogil=True, fastmath={"reassoc"})
-def dot(x: Array, y: Array) -> float:
-    """Sum of products in the order in which vectors have them: the same bits in every run, six times as fast."""
-    total = 0.0
-    for n in range(len(x)):
-        total += x[n] * y[n]
-    return total
 
 
 @compiled(nogil=True)

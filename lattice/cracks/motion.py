@@ -8,20 +8,19 @@ import numpy as np
 
 from lattice.compiled import compiled
 from lattice.cracks.blocks import (
-    GAINED,
-    NEW,
-    OLD,
-    PULL,
     SAYS,
     V,
     Y,
     add_forces,
     fetch,
     fetch_cells,
+    fetch_lean,
     force_block,
     lean_block,
     moved,
+    pose_in,
     power_block,
+    put_lean,
 )
 from lattice.cracks.cells import (
     FAR,
@@ -36,8 +35,8 @@ from lattice.cracks.cells import (
     plate_at,
     tangent_energy,
 )
-from lattice.cracks.evaluate import evaluate, write
-from lattice.cracks.kinematics import elongations, leaned, strain_of
+from lattice.cracks.evaluate import renew_cell, write
+from lattice.cracks.kinematics import Pose, Strain, elongations, leaned, plus, pose_of, strain_of
 from lattice.cracks.law import CrackLaw, Local, law_at
 from lattice.cracks.slopes import Lean, OnNodes
 from lattice.explicit.layout import LANES, U_X, Motion, PerNode, W
@@ -62,55 +61,46 @@ class Nodes(NamedTuple):
 
     y: Array  #: effective displacement x + alpha v
     v: Array  #: velocity
-    x: Array  #: room for displacements
-    way: Array  #: room for what they were in the last sub-step
     my: int  #: places in a row
     alpha: float  #: material damping [s]
     dt: float  #: sub-step [s]
 
 
-@compiled(nogil=True)
-def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
-    """Evaluates the law in cell k at y - alpha v; its energy [J]."""
-    cracks, my, lean, local = layered.cells, nodes.my, layered.lean.strain, layered.local
-    b, linear = cracks.corner[k], cracks.linear
-    for c in range(5):
-        for n in (b, b + my, b + 1, b + my + 1):
-            nodes.x[c, n] = nodes.y[c, n] - nodes.alpha * nodes.v[c, n]
-            nodes.way[c, n] = nodes.dt * nodes.v[c, n]
+@compiled(inline="always")
+def ask(k: int, y: Pose, v: Pose, times: tuple[float, float], layered: Layered) -> float:
+    """Evaluates the law in cell k at y - alpha v; its energy [J]. ``times`` are alpha and the sub-step [s]."""
+    cracks, lean, local, (alpha, dt) = layered.cells, layered.lean.strain, layered.local, times
+    b, at, linear = cracks.corner[k], place(k), cracks.linear
     plate, law = plate_at(b, layered.plate, local), law_at(b, layered.law, local)
-    in_sheet, _ = strain_of(b, my, 0.5 / plate.d, nodes.y)
-    e = leaned(in_sheet, b, lean)
-    write(SEEN, place(k), (e.n, e.t, e.g), linear)
-    write(SEEN_TURN, place(k), (e.kn, e.kt, e.kg), linear)
-    wide = max(abs(e.n) + 0.5 * plate.h * abs(e.kn), abs(e.t) + 0.5 * plate.h * abs(e.kt))
-    write(FAR, place(k), (MOVED * (local.e_0[b] + WIDE * wide),), linear)
-    stored: float = evaluate(k, nodes.x, nodes.way, my, plate, law, cracks, lean)
+    seen = leaned(y.strain, b, lean)
+    write(SEEN, at, (seen.n, seen.t, seen.g), linear)
+    write(SEEN_TURN, at, (seen.kn, seen.kt, seen.kg), linear)
+    half = 0.5 * plate.h
+    wide = max(abs(seen.n) + half * abs(seen.kn), abs(seen.t) + half * abs(seen.kt))
+    write(FAR, at, (MOVED * (local.e_0[b] + WIDE * wide),), linear)
+    x, still = plus(Pose(seen, y.long), -alpha, v), Pose(Strain(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+    stored: float = renew_cell(k, x, plus(still, dt, v), plate, law, cracks)
     return stored
 
 
-@compiled(nogil=True)
-def put_lean(first: int, end: int, layered: Layered) -> float:
-    """Slopes of cells from a block to their places; the energy that these have given, over d^2 [J/m2]."""
-    room, lean, gained = layered.nodes.room, layered.lean, 0.0
-    for k in range(first, end):
-        b, lane = layered.cells.corner[k], k - first
-        gained += room[GAINED + lane]
-        for i in range(3):
-            lean.strain[i, b] = room[NEW + i * LANES + lane]
-        for i in range(2):
-            lean.pull[i, b] = room[PULL + i * LANES + lane]
-    return gained
+@compiled(nogil=True, error_model="numpy")
+def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
+    """Evaluates the law in cell k at y - alpha v; its energy [J]."""
+    b, my, d = layered.cells.corner[k], nodes.my, layered.plate.d
+    y, v = pose_of(b, my, d, nodes.y), pose_of(b, my, d, nodes.v)
+    stored: float = ask(k, y, v, (nodes.alpha, nodes.dt), layered)
+    return stored
 
 
-@compiled(nogil=True)
-def fetch_lean(first: int, end: int, layered: Layered) -> None:
-    """Strains from slopes into the room of a block, those before and, until they are known, those now."""
-    room, strain = layered.nodes.room, layered.lean.strain
+@compiled(nogil=True, error_model="numpy")
+def ask_moved(first: int, end: int, times: tuple[float, float], layered: Layered) -> None:
+    """Evaluates the law in those cells of a block that `moved` has found."""
+    room, d = layered.nodes.room, layered.plate.d
     for k in range(first, end):
-        b, lane = layered.cells.corner[k], k - first
-        for i in range(3):
-            room[OLD + i * LANES + lane] = room[NEW + i * LANES + lane] = strain[i, b]
+        lane = k - first
+        if room[SAYS + lane] > 0.0:
+            ask(k, pose_in(Y + lane, d, room), pose_in(V + lane, d, room), times, layered)
+    fetch_cells(first, layered.cells.linear, room)
 
 
 @compiled(nogil=True)
@@ -120,22 +110,19 @@ def look_at_layered(nodes: Nodes, layered: Layered) -> float:
     Returns the energy that the slopes have given, over d^2 [J/m2].
     """
     cracks, room, d, my = layered.cells, layered.nodes.room, layered.plate.d, nodes.my
-    q, ago, gained = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0
+    q, ago, gained, lean = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0, layered.lean
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, room)
         fetch(Y, corner, my, nodes.y, room)
-        fetch_lean(first, end, layered)
+        fetch_lean(corner, lean.strain, room)
+        fetch(V, corner, my, nodes.v, room)
         if layered.leans:
-            fetch(V, corner, my, nodes.v, room)
             lean_block(q, nodes.alpha, ago, room)
-            gained += put_lean(first, end, layered)
+            gained += put_lean(corner, room, lean.strain, lean.pull)
         if moved(q, room) > 0:
-            for k in range(first, end):
-                if room[SAYS + k - first] > 0.0:
-                    evaluate_at(k, nodes, layered)
-            fetch_cells(first, cracks.linear, room)
+            ask_moved(first, end, (nodes.alpha, nodes.dt), layered)
         force_block(d, room)
         add_forces(corner, my, room, layered.nodes.force)
     return gained
@@ -152,7 +139,7 @@ def crack_forces(my: int, y: Array, layered: Layered) -> None:
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, on.room)
         fetch(Y, corner, my, y, on.room)
-        fetch_lean(first, end, layered)
+        fetch_lean(corner, layered.lean.strain, on.room)
         force_block(layered.plate.d, on.room)
         add_forces(corner, my, on.room, on.force)
 
@@ -173,6 +160,15 @@ def damping_power(my: int, v: Array, mean: Array, layered: Layered) -> float:
     return power
 
 
+@compiled(nogil=True, fastmath={"reassoc"})
+def dot(x: Array, y: Array) -> float:
+    """Sum of products in the order in which vectors have them: the same bits in every run, six times as fast."""
+    total = 0.0
+    for n in range(len(x)):
+        total += x[n] * y[n]
+    return total
+
+
 @compiled(nogil=True)
 def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
     """Adds forces (5, places) on all nodes to a sub-step that has been made."""
@@ -190,10 +186,8 @@ def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
 @compiled(nogil=True)
 def pull_on_held(held: Array, force: Array) -> float:
     """Force along x that nodes with ``held`` (places,) 1 need against the forces (5, places) [N]."""
-    total = 0.0
-    for n in range(held.shape[0]):
-        total -= held[n] * force[U_X, n]
-    return total
+    total: float = dot(held, force[U_X])
+    return -total
 
 
 @compiled(nogil=True)

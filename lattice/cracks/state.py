@@ -13,7 +13,7 @@ from lattice.cracks.law import CrackLaw, Local, N
 from lattice.cracks.layers import WEIGHTS
 from lattice.cracks.motion import Layered
 from lattice.cracks.slopes import Lean, level, on_nodes
-from lattice.explicit.layout import LANES
+from lattice.explicit.layout import LANES, copied
 from lattice.grid import Array, BoolArray, IntArray
 
 
@@ -29,8 +29,8 @@ class LayeredCells:
         """A copy with arrays of its own, see `memory.remember`."""
         new = object.__new__(LayeredCells)
         new.__dict__.update(vars(self))
-        new._cracks = Cracks._make(a.copy() for a in self._cracks)
-        new.lean = Lean._make(a.copy() for a in self.lean)
+        new._cracks = Cracks._make(map(copied, self._cracks))
+        new.lean = Lean._make(map(copied, self.lean))
         return new
 
     def view(self) -> Layered:
@@ -59,7 +59,7 @@ class LayeredCells:
     def _by_cell(self) -> Iterator[NDArray[Any]]:
         """All arrays of the cells but ``linear``, with the cell as first index."""
         c = self._cracks
-        yield from (c.cell, c.corner, c.axis.T, c.damage, c.crushed, c.slip, c.shear_slip, c.thrust, c.constant)
+        yield from (c.cell, c.corner, c.axis.T, c.history, c.shear_slip, c.thrust, c.constant)
 
     def _lines(self) -> Array:
         """The lines of ``linear``, (blocks, lines, LANES)."""

@@ -18,7 +18,7 @@ from lattice.contact import EdgeContact, lever_of, point_displacement
 from lattice.criteria.laws import combined_tension
 from lattice.explicit import layout
 from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
-from lattice.explicit.kernels import pull_of_springs, push, sweep
+from lattice.explicit.kernels import pull_of_springs, push, sweep, unpack
 from lattice.explicit.layout import Motion, PerNode
 from lattice.explicit.march import march
 from lattice.explicit.screen import Judge, screen_of, thresholds
@@ -170,14 +170,12 @@ class ExplicitEngine(Engine):
 
     def moving(self, old: State, present: BoolArray) -> State:
         """The state now with the velocity of half a sub-step ago; nodes that have left keep theirs."""
-        u, q = self.displacement()
-        v, on = self.get(self.motion.v), present[:, None]
-        return State(
-            np.where(on, u, old.u),
-            np.where(on, q, old.q),
-            np.where(on, v[:, :2], old.u_dot),
-            np.where(on, v[:, 2:], old.q_dot),
-        )
+        v = self.motion.v
+        now, then = (*self.displacement(), *self._at_nodes(Motion(v, v), 0.0)), (old.u, old.q, old.u_dot, old.q_dot)
+        gone = np.flatnonzero(~present)
+        for new, was in zip(now, then, strict=True):
+            new[gone] = was[gone]
+        return State(*now)
 
     def ripple(self, nodes: BoolArray) -> float:
         """dt^2/8 a . M a of ``nodes`` (n,), by which the energy of their last state exceeds what leapfrog conserves."""
@@ -204,9 +202,13 @@ class ExplicitEngine(Engine):
 
     def displacement(self, ago: float = 0.0) -> tuple[Array, Array]:
         """U (n, 2) and q (n, 3) now, or ``ago`` sub-steps before, up to one."""
-        y, v = self.motion
-        x = self.get(y - (self.alpha + ago * self.dt) * v)
-        return np.ascontiguousarray(x[:, :2]), np.ascontiguousarray(x[:, 2:])
+        return self._at_nodes(self.motion, self.alpha + ago * self.dt)
+
+    def _at_nodes(self, motion: Motion, ago: float) -> tuple[Array, Array]:
+        """Values y - ago v of all nodes, (n, 2) and (n, 3)."""
+        u, q = np.empty((self.grid.nodes, 2)), np.empty((self.grid.nodes, 3))
+        unpack(motion, ago, self.grid.ny, u, q)
+        return u, q
 
     # ---- forces ------------------------------------------------------------------------------------------------
 

@@ -72,9 +72,11 @@ def point_forces(loads: Loads, columns: int) -> PointForces:
     """Those forces of loads that are not zero; ``columns`` nodes across."""
     parts = []
     for load in loads:
-        force = np.hstack((load.force_u, load.force_q))
-        nodes = np.flatnonzero(force.any(axis=1))
-        parts.append((nodes, force[nodes]))
+        some = np.zeros(len(load.force_u), bool)
+        for force in (load.force_u, load.force_q):
+            some[np.flatnonzero(force) // force.shape[1]] = True
+        nodes = np.flatnonzero(some)
+        parts.append((nodes, np.hstack((load.force_u[nodes], load.force_q[nodes]))))
     if not parts:
         return NOTHING
     nodes, force = (np.concatenate(p) for p in zip(*parts, strict=True))

@@ -188,3 +188,15 @@ def push(row: IntArray, column: IntArray, force: Array, motion: Motion, kick: Pe
             dv = share * force[k, c]
             motion.v[c, i, j] += dv
             motion.y[c, i, j] += go * dv
+
+
+@compiled(nogil=True)
+def unpack(motion: Motion, ago: float, ny: int, u: Array, q: Array) -> None:
+    """Writes y - ago v of all nodes into u (n, 2) and q (n, 3)."""
+    y, v = motion
+    for n in range(len(u)):
+        i, j = n // ny, n % ny
+        for c in range(2):
+            u[n, c] = y[c, i, j] - ago * v[c, i, j]
+        for c in range(3):
+            q[n, c] = y[c + 2, i, j] - ago * v[c + 2, i, j]

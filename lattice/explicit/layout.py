@@ -8,9 +8,10 @@ y = x + alpha v and never x itself, see `lattice.explicit.kernels`.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
@@ -60,7 +61,7 @@ class Pace(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Velocities in a sub-step whose damping is taken stock of, each (5, n_x+1, m_y); else room."""
+    """Velocities in a sub-step whose damping is taken stock of, each (5, n_x+1, m_y)."""
 
     before: Array
     mean: Array  #: of those before and after
@@ -95,6 +96,15 @@ def aligned(*shape: int) -> Array:
     raw = np.zeros(math.prod(shape) + LANES)
     start = -raw.ctypes.data // 8 % LANES
     return raw[start : start + math.prod(shape)].reshape(shape)
+
+
+def copied(array: NDArray[Any]) -> NDArray[Any]:
+    """A copy; numbers begin at a cache line."""
+    if array.dtype != np.float64:
+        return array.copy()
+    new = aligned(*array.shape)
+    new[:] = array
+    return new
 
 
 def motion(grid: Grid) -> Motion:
