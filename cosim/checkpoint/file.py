@@ -23,7 +23,7 @@ from cosim.checkpoint.graph import Graph
 from cosim.errors import InputError
 from cosim.outputs import MAGIC, whole
 
-FORMAT = 1  #: goes up with every change that an older reader would misread
+FORMAT = 2  #: goes up with every change that an older reader would misread
 ENDING = ".checkpoint"
 LARGEST = 2**34  #: bytes that a state may unpack to
 LEVEL = 1  #: of the compression: the fastest
