@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cosim.build_motion import build_motion, repeats_of
-from cosim.build_rubble import build_rubble, filling_rate
+from cosim.build_rubble import build_rubble, filling_rate, initial_rubble
 from cosim.errors import InputError
 from cosim.loads import loads_of
 from cosim.observer import RunInfo
@@ -24,7 +24,6 @@ from coupling.interface import Path as Way
 from coupling.ledger import Ledger
 from coupling.moving import WithStructure
 from coupling.rubble_port import NoRubble, RubblePort
-from coupling.rubble_port.initial import Initial
 from coupling.scheduler import Scheduler, Scheme
 from coupling.schemes import SCHEMES, Iteration
 from coupling.sheet_port import SheetPort
@@ -73,9 +72,7 @@ def build(scenario: Scenario, motion: Motion | None = None, *, begins: bool = Tr
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
         if begins and scenario.rubble.initial_volume > 0.0:
-            r = scenario.rubble
-            lengths = (float(r.initial_lengths[0]), float(r.initial_lengths[1]))
-            lay_rubble(port, rubble, Initial(r.initial_volume, r.initial_porosity, lengths, scenario.scenario.seed))
+            lay_rubble(port, rubble, initial_rubble(scenario))
             ledger.initial_mass += rubble.mass
     scheme = build_scheme(scenario)
     if motion is not None and way is not None:

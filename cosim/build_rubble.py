@@ -7,6 +7,7 @@ import math
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Structure
 from coupling.rubble_port import RubblePort
+from coupling.rubble_port.initial import Initial
 from lattice.grid import Grid
 from rubble.domain import Domain
 from rubble.physics import RubblePhysics
@@ -58,6 +59,13 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         domain=domain,
         threads=r.threads,
     )
+
+
+def initial_rubble(scenario: Scenario) -> Initial:
+    """What is asked of the rubble of earlier ice."""
+    r = scenario.rubble
+    lengths = (float(r.initial_lengths[0]), float(r.initial_lengths[1]))
+    return Initial(r.initial_volume, r.initial_porosity, lengths, scenario.scenario.seed)
 
 
 def sections_of(scenario: Scenario) -> tuple[float, float]:

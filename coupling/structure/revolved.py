@@ -27,11 +27,11 @@ AROUND = 96  #: sides of the picture
 
 @compiled()
 def overlap_of_body(x: Array, y: Array, z: Array, profile_z: Array, profile_r: Array) -> tuple[Array, Array]:
-    """`Structure.overlap` of a body of revolution."""
+    """`Structure.overlap` of a body of revolution; ice behind the axis has passed the face."""
     L, normal = np.zeros(y.shape), np.zeros((*y.shape, 3))
     normal[..., 0] = -1.0
     for i in range(y.shape[0]):
-        if not profile_z[0] <= z[i] <= profile_z[-1]:
+        if x[i] >= 0.0 or not profile_z[0] <= z[i] <= profile_z[-1]:
             continue
         r, slope = piece_at(z[i], profile_z, profile_r)
         length = sqrt(1.0 + slope**2)

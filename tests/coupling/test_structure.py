@@ -119,3 +119,10 @@ def test_over_the_top_nothing_overlaps_and_the_normal_is_against_the_drift(struc
     L, normal = structure.overlap(np.array([5.0]), np.zeros((1, 2)), np.array([5.1]))
     assert not L.any()
     np.testing.assert_array_equal(normal, [[[-1.0, 0.0, 0.0]] * 2])
+
+
+def test_ice_that_has_passed_the_axis_is_behind_the_face():
+    """Beside a cone the face looks along y; behind the axis its front is metres away along x and pushes nothing."""
+    y, z = np.full((3, 1), 14.9), np.zeros(3)
+    L, _ = CONE.overlap(np.array([-1.5, -0.5, 0.5]), y, z)
+    np.testing.assert_allclose(L[:, 0], [np.sqrt(15.0**2 - 14.9**2) - 1.5, np.sqrt(15.0**2 - 14.9**2) - 0.5, 0.0])
