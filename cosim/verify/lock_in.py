@@ -29,11 +29,14 @@ from coupling.structure.motion import LinearMotion, modal
 
 PARAMETERS: dict[str, Any] = {
     "ratios": [0.5, 1.0, 2.0],
-    "stiffness": 1.0e6,
+    "stiffness": 5.0e5,
     "damping": 0.03,
-    "seconds": 10.0,
-    "skip": 2.0,
-    "nodes": [37, 28],
+    "seconds": 8.0,
+    "skip": 1.5,
+    "size": [16.0, 14.0],
+    "nodes": [25, 22],
+    "drift": 0.8,
+    "window": 0.04,
     "rubble": True,
     "scenario": "narrow_cone",
 }
@@ -63,8 +66,11 @@ def tower(p: dict[str, Any], frequency: float) -> LinearMotion:
 
 def run_of(p: dict[str, Any], motion: LinearMotion | None) -> RunResult:
     """The coupled run."""
-    texts = [f"sheet.nodes={p['nodes']}", f"scenario.duration='{p['seconds']} s'"]
-    scenario = load_scenario(p["scenario"], [*texts, f"rubble.enabled={str(p['rubble']).lower()}"])
+    length, width = p["size"]
+    texts = [f"sheet.length='{length} m'", f"sheet.width='{width} m'", f"sheet.nodes={p['nodes']}"]
+    texts += [f"scenario.duration='{p['seconds']} s'", f"drift.velocity='{p['drift']} m/s'"]
+    texts += [f"coupling.window='{p['window']} s'", f"rubble.enabled={str(p['rubble']).lower()}"]
+    scenario = load_scenario(p["scenario"], texts)
     scheduler, result = build(scenario, motion), RunResult(scenario)
     while scheduler.t_ns < scenario.duration_ns:
         frame = scheduler.macro_step()
