@@ -1,9 +1,10 @@
 """Case `lock-in`: a tower before the narrow cone, its first frequency swept over the frequency at which ice breaks.
 
 The ice, cone and drift of `scenarios/narrow_cone` on a coarse mesh. First the cone stands still: its load breaks at
-f_b, one over the median time between peaks. Then it stands on one mode of frequency f_1 = r f_b, the stiffness k at the
-waterline being the same for every r and the mass k / (2 pi f_1)^2. Beside each coupled run stands the answer of the
-same mode to the load of the cone that stood still: the difference is what the motion does to the ice.
+f_b, one over the mean time between peaks of its mean over `SMOOTH`. Then it stands on one mode of frequency f_1 = r
+f_b, the stiffness k at the waterline being the same for every r and the mass k / (2 pi f_1)^2. Beside each coupled run
+stands the answer of the same mode to the load of the cone that stood still: the difference is what the motion does to
+the ice.
 
 Amplifications are over k^-1 F of the cone that stood still; for a sine of frequency f_b its deviation grows by
 1 / sqrt((1 - (1/r)^2)^2 + (2 zeta / r)^2) (Chopra, Dynamics of Structures, 3.2), which the measure itself must give.
@@ -16,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from cosim.analysis.levels import peak_interval
+from cosim.analysis.levels import peaks_of
 from cosim.analysis.run_data import RunData
 from cosim.build import build
 from cosim.moments import grip_of
@@ -24,14 +25,14 @@ from cosim.scenario.loading import load_scenario
 from cosim.simulation import RunResult
 from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
 from cosim.verify.lock_in_figure import draw
-from coupling.interface import NS, Array
+from coupling.interface import Array
 from coupling.structure.motion import LinearMotion, modal
 
 PARAMETERS: dict[str, Any] = {
-    "ratios": [0.5, 1.0, 2.0],
+    "ratios": [0.6, 1.0, 2.0],
     "stiffness": 5.0e5,
     "damping": 0.03,
-    "seconds": 8.0,
+    "seconds": 12.0,
     "skip": 1.5,
     "size": [16.0, 14.0],
     "nodes": [25, 22],
@@ -42,6 +43,7 @@ PARAMETERS: dict[str, Any] = {
 }
 SURGE = np.array([[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
 SINE = "Chopra, Dynamics of Structures, 3.2"
+SMOOTH = 0.4  #: over which the load is averaged before its peaks are counted [s]
 DENSE = np.geomspace(0.3, 3.0, 61)  #: ratios of the answers to the load of the cone that stood still
 
 
@@ -53,7 +55,7 @@ class Answer:
     largest: float  #: displacement [m]
     load_deviation: float  #: of the mean over the averaging time [N]
     load_largest: float  #: of the same [N]
-    breaking: float  #: frequency of the peaks of the load [Hz]; 0: fewer than three
+    breaking: float  #: frequency of the peaks of the load [Hz]; 0: fewer than two
     speed: float = 0.0  #: largest of the structure [m/s]
     residual: float = 0.0  #: of the structure's books, as part of what it received
 
@@ -79,12 +81,12 @@ def run_of(p: dict[str, Any], motion: LinearMotion | None) -> RunResult:
     return result
 
 
-def answer_to(motion: LinearMotion, t_ns: Array, load: Array) -> Array:
-    """Surge after each window (n,) [m] of a structure that bears the load (n,) [N] of one that rests."""
+def answer_to(motion: LinearMotion, t: Array, load: Array) -> Array:
+    """Surge at times (n,) [m] of a structure that bears the load (n,) [N] of one that rests."""
     out, before = [], 0.0
-    for t, fx in zip(t_ns / NS, load, strict=True):
-        motion.advance(before, t - before, np.array([fx, 0.0, 0.0, 0.0, 0.0, 0.0]))
-        before = t
+    for now, fx in zip(t, load, strict=True):
+        motion.advance(before, now - before, np.array([fx, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        before = now
         out.append(motion.displacement[0])
     return np.array(out)
 
@@ -95,14 +97,15 @@ def measured(p: dict[str, Any], data: RunData, ledger: dict[str, float] | None =
     load = data.lasting.component("fx")[after]
     way = data.motion["surge"][after] if data.motion else np.zeros(1)
     speed = float(np.abs(data.motion["surge_rate"]).max()) if data.motion else 0.0
-    interval = peak_interval(data, begin=p["skip"])
+    places, _, step = peaks_of(data, "fx", p["skip"], 0.2, SMOOTH)
+    span = step * float(places[-1] - places[0]) if len(places) > 1 else 0.0
     received = max(abs((ledger or {}).get("structure_interface_exchanged", 0.0)), 1e-30)
     return Answer(
         float(way.std()),
         float(way.max()),
         float(load.std()),
         float(load.max()),
-        1.0 / interval if interval else 0.0,
+        (len(places) - 1) / span if span else 0.0,
         speed,
         (ledger or {}).get("structure_energy_residual", 0.0) / received,
     )
@@ -110,8 +113,8 @@ def measured(p: dict[str, Any], data: RunData, ledger: dict[str, float] | None =
 
 def sine_amplification(p: dict[str, Any], ratio: float) -> tuple[float, float]:
     """Of the deviation under a sine of 1 Hz, by `answer_to` over its last periods and by the formula."""
-    t = np.arange(1, 8001) * 0.02
-    way = answer_to(tower(p, ratio), t * NS, np.sin(2.0 * np.pi * (t - 0.01)))[-1000:]
+    t = np.linspace(0.02, 160.0, 8000)
+    way = answer_to(tower(p, ratio), t, np.sin(2.0 * np.pi * (t - 0.01)))[-1000:]
     formula = 1.0 / np.hypot(1.0 - ratio**-2, 2.0 * p["damping"] / ratio)
     return float(way.std() * p["stiffness"] * np.sqrt(2.0)), float(formula)
 
@@ -128,7 +131,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
         result = run_of(p, tower(p, r * f_b))
         found.append(measured(p, result.data, result.ledger))
     load, after = rests.component("fx"), rests.t > p["skip"]
-    ways = np.array([answer_to(tower(p, r * f_b), rests.t_ns, load)[after] for r in (*p["ratios"], *DENSE)])
+    ways = np.array([answer_to(tower(p, r * f_b), rests.t, load)[after] for r in (*p["ratios"], *DENSE)])
     n = len(p["ratios"])
     quantities = [*_checks(p, found), *_values(p, still, found, ways[:n])]
     curves = np.column_stack((DENSE, ways[n:].std(axis=1), ways[n:].max(axis=1)))
