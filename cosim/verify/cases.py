@@ -25,6 +25,7 @@ from cosim.verify import (
     frequency_response,
     froude,
     l_beam,
+    lock_in,
     mohr_plane,
     momentum,
     pile,
@@ -81,6 +82,7 @@ CASES: dict[str, ModuleType] = {
     "pressed-edge": pressed_edge,
     "cone-breaking": cone_breaking,
     "first-encounter": first_encounter,
+    "lock-in": lock_in,
 }
 
 

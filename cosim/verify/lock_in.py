@@ -1,0 +1,169 @@
+"""Case `lock-in`: a tower before the narrow cone, its first frequency swept over the frequency at which ice breaks.
+
+The ice, cone and drift of `scenarios/narrow_cone` on a coarse mesh. First the cone stands still: its load breaks at
+f_b, one over the mean time between peaks of its mean over `SMOOTH`. Then it stands on one mode of frequency f_1 = r
+f_b, the stiffness k at the waterline being the same for every r and the mass k / (2 pi f_1)^2. Beside each coupled run
+stands the answer of the same mode to the load of the cone that stood still: the difference is what the motion does to
+the ice.
+
+Amplifications are over k^-1 F of the cone that stood still; for a sine of frequency f_b its deviation grows by
+1 / sqrt((1 - (1/r)^2)^2 + (2 zeta / r)^2) (Chopra, Dynamics of Structures, 3.2), which the measure itself must give.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cosim.analysis.levels import peaks_of
+from cosim.analysis.run_data import RunData
+from cosim.build import build
+from cosim.moments import grip_of
+from cosim.scenario.loading import load_scenario
+from cosim.simulation import RunResult
+from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
+from cosim.verify.lock_in_figure import draw
+from coupling.interface import Array
+from coupling.structure.motion import LinearMotion, modal
+
+PARAMETERS: dict[str, Any] = {
+    "ratios": [1.0],
+    "stiffness": 5.0e5,
+    "damping": 0.03,
+    "seconds": 8.0,
+    "skip": 1.5,
+    "size": [16.0, 14.0],
+    "nodes": [25, 22],
+    "drift": 0.8,
+    "window": 0.04,
+    "rubble": True,
+    "scenario": "narrow_cone",
+}
+SURGE = np.array([[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
+SINE = "Chopra, Dynamics of Structures, 3.2"
+SMOOTH = 0.4  #: over which the load is averaged before its peaks are counted [s]
+DENSE = np.geomspace(0.4, 4.5, 61)  #: ratios of the answers to the load of the cone that stood still
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Of one run, after its beginning."""
+
+    deviation: float  #: of the displacement [m]
+    largest: float  #: displacement [m]
+    load_deviation: float  #: of the mean over the averaging time [N]
+    load_largest: float  #: of the same [N]
+    breaking: float  #: frequency of the peaks of the load [Hz]; 0: fewer than two
+    speed: float = 0.0  #: largest of the structure [m/s]
+    residual: float = 0.0  #: of the structure's books, as part of what it received
+
+
+def tower(p: dict[str, Any], frequency: float) -> LinearMotion:
+    """One mode in surge of the stiffness at the waterline."""
+    mass = p["stiffness"] / (2.0 * np.pi * frequency) ** 2
+    return modal(np.array([frequency]), np.array([p["damping"]]), np.array([mass]), SURGE)
+
+
+def run_of(p: dict[str, Any], motion: LinearMotion | None) -> RunResult:
+    """The coupled run."""
+    length, width = p["size"]
+    texts = [f"sheet.length='{length} m'", f"sheet.width='{width} m'", f"sheet.nodes={p['nodes']}"]
+    texts += [f"scenario.duration='{p['seconds']} s'", f"drift.velocity='{p['drift']} m/s'"]
+    texts += [f"coupling.window='{p['window']} s'", f"rubble.enabled={str(p['rubble']).lower()}"]
+    scenario = load_scenario(p["scenario"], texts)
+    scheduler, result = build(scenario, motion), RunResult(scenario)
+    while scheduler.t_ns < scenario.duration_ns:
+        frame = scheduler.macro_step()
+        result.see(frame, grip_of(frame, scenario.moment_point))
+        result.ledger = frame.ledger
+    return result
+
+
+def answer_to(motion: LinearMotion, t: Array, load: Array) -> Array:
+    """Surge at times (n,) [m] of a structure that bears the load (n,) [N] of one that rests."""
+    out, before = [], 0.0
+    for now, fx in zip(t, load, strict=True):
+        motion.advance(before, now - before, np.array([fx, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        before = now
+        out.append(motion.displacement[0])
+    return np.array(out)
+
+
+def measured(p: dict[str, Any], data: RunData, ledger: dict[str, float] | None = None) -> Answer:
+    """What a run came to."""
+    after = data.t > p["skip"]
+    load = data.lasting.component("fx")[after]
+    way = data.motion["surge"][after] if data.motion else np.zeros(1)
+    speed = float(np.abs(data.motion["surge_rate"]).max()) if data.motion else 0.0
+    places, _, step = peaks_of(data, "fx", p["skip"], 0.2, SMOOTH)
+    span = step * float(places[-1] - places[0]) if len(places) > 1 else 0.0
+    received = max(abs((ledger or {}).get("structure_interface_exchanged", 0.0)), 1e-30)
+    return Answer(
+        float(way.std()),
+        float(way.max()),
+        float(load.std()),
+        float(load.max()),
+        (len(places) - 1) / span if span else 0.0,
+        speed,
+        (ledger or {}).get("structure_energy_residual", 0.0) / received,
+    )
+
+
+def sine_amplification(p: dict[str, Any], ratio: float) -> tuple[float, float]:
+    """Of the deviation under a sine of 1 Hz, by `answer_to` over its last periods and by the formula."""
+    t = np.linspace(0.02, 160.0, 8000)
+    way = answer_to(tower(p, ratio), t, np.sin(2.0 * np.pi * (t - 0.01)))[-1000:]
+    formula = 1.0 / np.hypot(1.0 - ratio**-2, 2.0 * p["damping"] / ratio)
+    return float(way.std() * p["stiffness"] * np.sqrt(2.0)), float(formula)
+
+
+def run(p: dict[str, Any], quick: bool) -> CaseResult:
+    """The cone that stands still, and the sweep; ``quick``: one ratio, 3 s."""
+    if quick:
+        p = {**p, "ratios": p["ratios"][:1], "seconds": 3.0, "skip": 0.5}
+    rests = run_of(p, None).data
+    still = measured(p, rests)
+    f_b = still.breaking or 1.0
+    found = []
+    for r in p["ratios"]:
+        result = run_of(p, tower(p, r * f_b))
+        found.append(measured(p, result.data, result.ledger))
+    load, after = rests.component("fx"), rests.t > p["skip"]
+    ways = np.array([answer_to(tower(p, r * f_b), rests.t, load)[after] for r in (*p["ratios"], *DENSE)])
+    n = len(p["ratios"])
+    quantities = [*_checks(p, found), *_values(p, still, found, ways[:n])]
+    curves = np.column_stack((DENSE, ways[n:].std(axis=1), ways[n:].max(axis=1)))
+    figure = Figure("sweep", "A tower before ice that breaks", lambda sheet: draw(sheet, p, still, found, curves))
+    return CaseResult("lock-in", p, quantities, [figure])
+
+
+def _checks(p: dict[str, Any], found: list[Answer]) -> list[Quantity]:
+    """The measure under a sine, and the books of the structure."""
+    sines = np.array([sine_amplification(p, r) for r in (0.5, 1.0, 2.0)]).T
+    residuals = [a.residual for a in found]
+    return [
+        near("amplification of a sine at 0.5, 1, 2", sines[0], "-", sines[1], 0.02, SINE),
+        at_most("residual of the structure's books, part of the exchange", residuals, "-", 1e-9, "sum of the books"),
+    ]
+
+
+def _values(p: dict[str, Any], still: Answer, found: list[Answer], ways: Array) -> list[Quantity]:
+    """What is told, without a reference."""
+    k = p["stiffness"]
+    return [
+        value("breaking frequency of the cone that stands still", still.breaking, "Hz"),
+        value("its load: deviation, largest", [still.load_deviation, still.load_largest], "N"),
+        value("ratio f_1 / f_b", p["ratios"], "-"),
+        value("deviation of the displacement", [a.deviation for a in found], "m"),
+        value("its amplification", [a.deviation * k / still.load_deviation for a in found], "-"),
+        value("the same under the load at rest", ways.std(axis=1) * k / still.load_deviation, "-"),
+        value("largest displacement", [a.largest for a in found], "m"),
+        value("its amplification, largest", [a.largest * k / still.load_largest for a in found], "-"),
+        value("the same under the load at rest, largest", ways.max(axis=1) * k / still.load_largest, "-"),
+        value("amplification of the load's deviation", [a.load_deviation / still.load_deviation for a in found], "-"),
+        value("amplification of the largest load", [a.load_largest / still.load_largest for a in found], "-"),
+        value("breaking frequency of the coupled run", [a.breaking for a in found], "Hz"),
+        value("largest speed", [a.speed for a in found], "m/s"),
+    ]
