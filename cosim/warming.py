@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 
 from cosim.scenario.scenario import Scenario
 from cosim.show.talk import Talk
-from cosim.study.pool import pool_of
 from coupling import compiled as of_coupling
 from lattice import compiled as of_lattice
 from rubble import compiled as of_rubble
@@ -90,6 +89,8 @@ def _is_ours(event: Any) -> bool:
 
 def compile_parts(parts: Sequence[str], processes: int, done: Callable[[Compiled], None]) -> None:
     """Runs parts side by side; ``done`` is called as each ends. Raises BrokenProcessPool if a process dies."""
+    from cosim.study.pool import pool_of  # not for runs that find all kernels
+
     with pool_of(max(1, min(processes, len(parts)))) as pool:
         under_way = {pool.submit(compile_part, part) for part in parts}
         while under_way:

@@ -49,14 +49,27 @@ def locate(point: Record, nodes: Records, first: int, end: int) -> None:
 
 
 @compiled(nogil=True)
+def between(
+    point: Record, front: tuple[float, float], rear: tuple[float, float], origin: float = 0.0
+) -> tuple[float, float]:
+    """What two nodes do along x, from ``origin`` on, and z, as a point of the sheet does it.
+
+    Its sections stay plane and turn: speed and place of a contact must both be of this, or what the one keeps apart
+    the other finds overlapping.
+    """
+    w = point.weight
+    x = w * front[0] + (1.0 - w) * rear[0] - origin + point.lever * (front[1] - rear[1])
+    return x, w * front[1] + (1.0 - w) * rear[1]
+
+
+@compiled(nogil=True)
 def sheet_speed(nodes: Records, moves: Array, point: Record, way: Record) -> float:
     """Speed of the sheet's end of a row along one of its directions; ``moves`` as `Edges.motion`."""
     if point.edge < 0:
         return 0.0
     f, r, w, e = nodes[point.front], nodes[point.rear], point.weight, point.edge
-    x = w * f.v_x + (1.0 - w) * r.v_x + point.lever * (f.v_z - r.v_z) + moves[e, 0]
-    y = w * f.v_y + (1.0 - w) * r.v_y
-    z = w * f.v_z + (1.0 - w) * r.v_z + moves[e, 1]
+    x, z = between(point, (f.v_x, f.v_z), (r.v_x, r.v_z))
+    x, y, z = x + moves[e, 0], w * f.v_y + (1.0 - w) * r.v_y, z + moves[e, 1]
     found: float = x * way.x + y * way.y + z * way.z
     return found
 
@@ -100,8 +113,7 @@ def deeper_on_sheet(edges: Edges, section: int, point: Record, nx: float, nz: fl
     """By how much a contact with the sheet is deeper than with its outline: nodes have moved since that was made."""
     nodes, first = edges.nodes, edges.offset[section]
     locate(point, nodes, first, edges.offset[section + 1])
-    foremost, f, r, w = nodes[first], nodes[point.front], nodes[point.rear], point.weight
-    front, rear = f.z - f.outline_z, r.z - r.outline_z
-    x = w * (f.x - f.outline_x) + (1.0 - w) * (r.x - r.outline_x) - foremost.x + point.lever * (front - rear)
-    z = w * front + (1.0 - w) * rear - foremost.z
-    return float(x * nx + z * nz)
+    foremost, f, r = nodes[first], nodes[point.front], nodes[point.rear]
+    front, rear = (f.x - f.outline_x, f.z - f.outline_z), (r.x - r.outline_x, r.z - r.outline_z)
+    x, z = between(point, front, rear, foremost.x)
+    return float(x * nx + (z - foremost.z) * nz)

@@ -123,14 +123,14 @@ def _corners(scene: Scene, s: int) -> Array:
 
 
 @compiled(nogil=True)
-def _is_far(body: Array, corners: Array) -> bool:
+def _is_far(body: Array, widest: float, corners: Array) -> bool:
     """Whether a piece with these corners (m, 3) is too far from the axis, or below or above the body, to meet it."""
     x, y, m = corners[:, 0].mean(), corners[:, 1].mean(), corners.shape[0]
     reach, low, high = 0.0, np.inf, -np.inf
     for i in range(m):
         reach = max(reach, np.hypot(corners[i, 0] - x, corners[i, 1] - y))
         low, high = min(low, corners[i, 2]), max(high, corners[i, 2])
-    far: bool = np.hypot(x, y) - reach > body[:, 0].max() or low > body[-1, 1] or high < body[0, 1]
+    far: bool = np.hypot(x, y) - reach > widest or low > body[-1, 1] or high < body[0, 1]
     return far
 
 
@@ -145,10 +145,10 @@ def _put(scene: Scene, rows: Rows, c: int, spot: tuple[float, float, float], n: 
 
 
 @compiled(nogil=True)
-def _on_surface(scene: Scene, rows: Rows, c: int, spot: Spot) -> None:
-    """A row where ice stands in the body: half-way to the surface."""
+def _on_surface(scene: Scene, widest: float, rows: Rows, c: int, spot: Spot) -> None:
+    """A row where ice stands in the body, whose greatest radius is ``widest`` [m]: half-way to the surface."""
     rho, half = np.hypot(spot.x, spot.y), 0.5 * spot.depth
-    cos, sin = (spot.x / rho, spot.y / rho) if rho > AXIS * scene.body[:, 0].max() else (-1.0, 0.0)
+    cos, sin = (spot.x / rho, spot.y / rho) if rho > AXIS * widest else (-1.0, 0.0)
     n = (spot.n_rho * cos, spot.n_rho * sin, spot.n_z)
     rows.point[c].depth = spot.depth
     _put(scene, rows, c, (spot.x + half * n[0], spot.y + half * n[1], spot.z + half * n[2]), n)
@@ -200,24 +200,23 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
     """
     if scene.body.shape[0] == 0:
         return found
-    slices, last, c = scene.slices, first_of(old, before, ROUND_SLOT), found
+    slices, last, c, widest = scene.slices, first_of(old, before, ROUND_SLOT), found, scene.body[:, 0].max()
     for s in range(slices.piece.shape[0]):
         if not in_three(scene, s):
             continue
         corners, start = _corners(scene, s), c
-        if _is_far(scene.body, corners):
+        if _is_far(scene.body, widest, corners):
             continue
         n, rims = corners.shape[0], scene.body.shape[0] - 2
         if rows.point.shape[0] < c + 2 * n + 2 * rims:
             return -1
+        spots = [_spot(scene.body, corners[i, 0], corners[i, 1], corners[i, 2]) for i in range(n)]
         for feature in range(2 * n + 2 * rims):
+            spot = spots[feature % n]
             if feature < n:
-                spot = _spot(scene.body, corners[feature, 0], corners[feature, 1], corners[feature, 2])
                 met = spot.depth >= 0.0
             elif feature < 2 * n:
-                i, j = feature - n, (feature - n + 1) % n
-                p = _spot(scene.body, corners[i, 0], corners[i, 1], corners[i, 2])
-                q = _spot(scene.body, corners[j, 0], corners[j, 1], corners[j, 2])
+                p, q = spot, spots[(feature + 1) % n]
                 spot = _deepest(scene.body, p, q)
                 met = spot.depth >= 0.0 and spot.depth > max(p.depth, q.depth)
             else:
@@ -226,7 +225,7 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
             if not met:
                 continue
             if feature < 2 * n:
-                _on_surface(scene, rows, c, spot)
+                _on_surface(scene, widest, rows, c, spot)
             point = rows.point[c]
             point.a, point.b, point.edge, point.kind = scene.plates.moved.shape[0] - 1, slices.plate[s], -1, STRUCTURE
             point.slot_a, point.slot_b, point.feature = ROUND_SLOT, s, feature

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from cosim.analysis.instants import events_of
+from cosim.analysis.instants import events_of, first_contact
+from cosim.analysis.levels import load_mean
 from cosim.analysis.peaks import at_peak
 from cosim.analysis.run_data import RunData
 from coupling.energy import MOVING
@@ -99,16 +100,15 @@ def growth(run: RunData) -> float | None:
 
     Where ice still spreads along a long face, or rubble piles up, the loads of a run are those of its beginning.
     """
-    touched = np.flatnonzero(run.component("f") > 0.0)
-    if not len(touched) or len(run.t_ns) - touched[0] < 20:
+    start = first_contact(run)
+    if start is None or np.count_nonzero(run.t > start) < 20:
         return None
-    quarters = np.array_split(np.arange(touched[0], len(run.t_ns)), 4)[2:]
-    length = (run.t_ns - run.begin_ns).astype(float)
+    quarter = 0.25 * (float(run.t[-1]) - start)
     found = []
     for axis in ("fx", "fz"):
-        before, last = (abs(float(np.average(run.component(axis)[q], weights=length[q]))) for q in quarters)
-        if before > 0.0:
-            found.append(last / before)
+        third, last = (load_mean(run, axis, begin=k * quarter, end=(k + 1) * quarter) for k in (2, 3))
+        if third and last is not None:
+            found.append(abs(last / third))
     return max(found, default=None)
 
 

@@ -18,11 +18,8 @@ from typing import Any
 import numpy as np
 
 from cosim.analysis.levels import peaks_of
-from cosim.analysis.run_data import RunData
-from cosim.build import build
-from cosim.moments import grip_of
 from cosim.scenario.loading import load_scenario
-from cosim.simulation import RunResult
+from cosim.simulation import RunResult, run_scenario
 from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
 from cosim.verify.lock_in_figure import draw
 from coupling.interface import Array
@@ -66,19 +63,18 @@ def tower(p: dict[str, Any], frequency: float) -> LinearMotion:
     return modal(np.array([frequency]), np.array([p["damping"]]), np.array([mass]), SURGE)
 
 
-def run_of(p: dict[str, Any], motion: LinearMotion | None) -> RunResult:
-    """The coupled run."""
+def run_of(p: dict[str, Any], frequency: float | None) -> RunResult:
+    """The run with the tower of this frequency; None: the cone stands still."""
     length, width = p["size"]
     texts = [f"sheet.length='{length} m'", f"sheet.width='{width} m'", f"sheet.nodes={p['nodes']}"]
     texts += [f"scenario.duration='{p['seconds']} s'", f"drift.velocity='{p['drift']} m/s'"]
     texts += [f"coupling.window='{p['window']} s'", f"rubble.enabled={str(p['rubble']).lower()}"]
-    scenario = load_scenario(p["scenario"], texts)
-    scheduler, result = build(scenario, motion), RunResult(scenario)
-    while scheduler.t_ns < scenario.duration_ns:
-        frame = scheduler.macro_step()
-        result.see(frame, grip_of(frame, scenario.moment_point))
-        result.ledger = frame.ledger
-    return result
+    if frequency is not None:
+        omega = 2.0 * np.pi * frequency
+        mass, damping = p["stiffness"] / omega**2, 2.0 * p["damping"] * p["stiffness"] / omega
+        surge = f"{{mass='{mass} kg', stiffness='{p['stiffness']} N/m', damping='{damping} N*s/m'}}"
+        texts += ["structure.motion.kind=spring", f"structure.motion.surge={surge}"]
+    return run_scenario(load_scenario(p["scenario"], texts))
 
 
 def answer_to(motion: LinearMotion, t: Array, load: Array) -> Array:
@@ -91,15 +87,18 @@ def answer_to(motion: LinearMotion, t: Array, load: Array) -> Array:
     return np.array(out)
 
 
-def measured(p: dict[str, Any], data: RunData, ledger: dict[str, float] | None = None) -> Answer:
+def measured(p: dict[str, Any], result: RunResult) -> Answer:
     """What a run came to."""
+    data, books = result.data, result.ledger
     after = data.t > p["skip"]
     load = data.lasting.component("fx")[after]
     way = data.motion["surge"][after] if data.motion else np.zeros(1)
     speed = float(np.abs(data.motion["surge_rate"]).max()) if data.motion else 0.0
     places, _, step = peaks_of(data, "fx", p["skip"], 0.2, SMOOTH)
     span = step * float(places[-1] - places[0]) if len(places) > 1 else 0.0
-    received = max(abs((ledger or {}).get("structure_interface_exchanged", 0.0)), 1e-30)
+    residual = 0.0
+    if data.motion:
+        residual = books["structure_energy_residual"] / books["structure_interface_exchanged"]
     return Answer(
         float(way.std()),
         float(way.max()),
@@ -107,7 +106,7 @@ def measured(p: dict[str, Any], data: RunData, ledger: dict[str, float] | None =
         float(load.max()),
         (len(places) - 1) / span if span else 0.0,
         speed,
-        (ledger or {}).get("structure_energy_residual", 0.0) / received,
+        residual,
     )
 
 
@@ -123,13 +122,10 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     """The cone that stands still, and the sweep; ``quick``: one ratio, 3 s."""
     if quick:
         p = {**p, "ratios": p["ratios"][:1], "seconds": 3.0, "skip": 0.5}
-    rests = run_of(p, None).data
-    still = measured(p, rests)
+    alone = run_of(p, None)
+    rests, still = alone.data, measured(p, alone)
     f_b = still.breaking or 1.0
-    found = []
-    for r in p["ratios"]:
-        result = run_of(p, tower(p, r * f_b))
-        found.append(measured(p, result.data, result.ledger))
+    found = [measured(p, run_of(p, r * f_b)) for r in p["ratios"]]
     load, after = rests.component("fx"), rests.t > p["skip"]
     ways = np.array([answer_to(tower(p, r * f_b), rests.t, load)[after] for r in (*p["ratios"], *DENSE)])
     n = len(p["ratios"])

@@ -162,7 +162,7 @@ def damping_power(my: int, v: Array, mean: Array, layered: Layered) -> float:
 
 @compiled(nogil=True, fastmath={"reassoc"})
 def dot(x: Array, y: Array) -> float:
-    """Sum of products in the order in which vectors have them: the same bits in every run, six times as fast."""
+    """Sum of products in the order in which vectors have them: the same bits in every run."""
     total = 0.0
     for n in range(len(x)):
         total += x[n] * y[n]

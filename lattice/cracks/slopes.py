@@ -23,7 +23,7 @@ class OnNodes(NamedTuple):
 
     force: Array  #: (5, places) of layered cells and slopes on the nodes [N], [N m]
     room: Array  #: (LOOK,) of a block of layered cells, see `lattice.cracks.blocks`
-    rows: Array  #: (10 LINE,) of a row of cells, see `lattice.cracks.lean`
+    rows: Array  #: (9 LINE,) of a row of cells, see `lattice.cracks.lean`
 
 
 def level(places: int) -> Lean:
@@ -34,4 +34,4 @@ def level(places: int) -> Lean:
 
 def on_nodes(places: int) -> OnNodes:
     """No force."""
-    return OnNodes(aligned(5, places), aligned(LOOK), aligned(10 * LINE))
+    return OnNodes(aligned(5, places), aligned(LOOK), aligned(9 * LINE))

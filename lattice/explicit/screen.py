@@ -78,10 +78,7 @@ def reached(
     r1y = y[PHI_Y, i + 1, j] - y[PHI_Y, i, j + 1] - alpha * (v[PHI_Y, i + 1, j] - v[PHI_Y, i, j + 1])
     k11, k22, k12 = fibre * (r0x + r1x), fibre * (r0y - r1y), fibre * (r0y + r1y + r0x - r1x)
     mean, bend = e11 + e22, k11 + k22
-    top, bottom = (
-        limit - f * (mean + bend),
-        limit - f * (mean - bend),
-    )  # what is left for R, of which the square is known
+    top, bottom = limit - f * (mean + bend), limit - f * (mean - bend)  # left for R, of which the square is known
     R_top, R_bottom = (e11 - e22 + k11 - k22) ** 2 + (e12 + k12) ** 2, (e11 - e22 - k11 + k22) ** 2 + (e12 - k12) ** 2
     return int(not ((top > 0.0) & (R_top < top * top))) + int(not ((bottom > 0.0) & (R_bottom < bottom * bottom)))
 
