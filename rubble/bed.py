@@ -45,5 +45,5 @@ def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: 
             set_arms(rows, c, plates, scene.edges)
             last = go_on_from(rows, c, old, last, before, cut)
             c += 1
-        bounds(scene, rows, start, c)
+        bounds(scene, rows, start, c, scene.widths[s])
     return c

@@ -38,13 +38,12 @@ def go_on_from(rows: Rows, c: int, old: Rows, last: int, before: int, cut: bool)
 
 
 @compiled(nogil=True)
-def bounds(scene: Scene, rows: Rows, start: int, end: int) -> None:
-    """What the contacts of a slice carry before they crush: strength times width times length, shared by them."""
+def bounds(scene: Scene, rows: Rows, start: int, end: int, width: float) -> None:
+    """What contacts of ice of a width [m] carry before they crush: strength times width times length, shared by them."""
     left, right, low, high, length = np.inf, -np.inf, np.inf, -np.inf, scene.shortest
     for c in range(start, end):
         point = rows.point[c]
         left, right, low, high = min(left, point.x), max(right, point.x), min(low, point.z), max(high, point.z)
         length = max(length, 2.0 * point.depth, np.hypot(right - left, high - low))
     for c in range(start, end):
-        width = min(scene.pitch, scene.widths[rows.point[c].slot_b])
-        rows.point[c].most = scene.strength * width * length / (end - start)
+        rows.point[c].most = scene.strength * min(scene.pitch, width) * length / (end - start)

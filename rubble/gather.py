@@ -54,15 +54,7 @@ class Scene(NamedTuple):
     cut: int  #: number of the sub-step in which the slices are new
     bed: float  #: height of the sea bed, -inf without one [m]
     moving: Moving  #: the structure
-    body: Array  #: (k, 2) r and z of its closed generator if it is a body of revolution, else (0, 2), see `round` [m]
-
-
-@compiled(nogil=True)
-def in_three(scene: Scene, s: int) -> bool:
-    """Whether a slice meets the structure in three dimensions: its piece is seen by no other plane."""
-    i = scene.slices.piece[s]
-    alone: bool = scene.body.shape[0] > 0 and scene.pieces.range[i, 0] == scene.pieces.range[i, 1]
-    return alone
+    body: Array  #: (k, 2) r and z of its closed generator if it is a body of revolution, else (0, 2), see `prisms` [m]
 
 
 @compiled(nogil=True)
@@ -87,7 +79,7 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
                 continue  # outlines that just fall together have no direction in which they could push
             if a == UNKNOWN or b == UNKNOWN:
                 return -2
-            if min(a, b) == STRUCTURE_SLOT and in_three(scene, max(a, b)):
+            if min(a, b) == STRUCTURE_SLOT and scene.body.shape[0] > 0:
                 continue
             if count + points > rows.point.shape[0]:
                 return -3

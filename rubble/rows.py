@@ -20,7 +20,6 @@ from rubble.plates import Plates
 
 ICE, STRUCTURE, SHEET, JOINT, BED = 0, 1, 2, 3, 4  #: kinds of rows
 KINDS = ("ice", "structure", "sheet", "bed")  #: of those that lose energy
-GIVES_WAY = 20.0  #: time in which ice of 3 m that has met deep in other ice comes apart, see `RubblePhysics.pace` [s]
 CRUSHES = 1.0 - 1e-9  #: share of the greatest impulse from which a contact crushes
 SAME_WAY = 0.99  #: cosine between the normals of a point before and after a sub-step, below which it is another one
 STEEPEST = 1e3  #: |n_y| over the rest of a normal beyond which a face counts as parallel to the section
@@ -61,7 +60,6 @@ class Surface(NamedTuple):
     restitution: float
     bias: float  #: share of an overlap that is taken out in a sub-step
     slop: float  #: overlap that is left alone [m]
-    gives_way: float  #: time in which ice that has met deep in other ice comes apart [s]
 
 
 def room(count: int) -> Rows:
@@ -192,7 +190,5 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, moving: Movin
             both = u + speed(n, plates.shift[point.a], plates.shift[point.b])
             point.met = max(over - point.owed - dt * max(-both, 0.0), 0.0)
         point.met = over if point.crushes else min(point.met, over)
-        if point.kind == ICE:
-            point.met *= 1.0 - dt / surface.gives_way
         point.owed = over - point.met
         point.shift_speed = surface.bias * point.owed / dt

@@ -80,7 +80,7 @@ class SectionTable:
         areas = np.zeros(len(piece))
         _cut_all(store.plates, tables.pieces, new, planes, areas)
         keep = np.flatnonzero(areas > SLIVER * h * h)
-        names = tables.numbers[piece] * KEYS + key + KEYS // 2
+        names = tables.pieces.number[piece] * KEYS + key + KEYS // 2
         order = keep[np.argsort(names[keep], kind="stable")]
         return self._enter(_chosen(new, order), names[order], store)
 

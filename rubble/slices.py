@@ -28,6 +28,7 @@ EDGE_ON = 1e-6  #: |e_y| of a plate that stands across the sections: below it a 
 class Pieces(NamedTuple):
     """Prisms of which plates are made, in the axes of their plate."""
 
+    number: IntArray  #: (p,) never reused
     plate: IntArray  #: (p,) row of the plate
     y: Array  #: (p,) of the middle [m]
     width: Array  #: (p,) along y [m]

@@ -17,7 +17,7 @@ from rubble.gather import Scene, gather
 from rubble.joints import Joints, joint_rows
 from rubble.pairs import find_pairs
 from rubble.plates import Plates, move_all
-from rubble.round import round_rows
+from rubble.prisms import round_rows
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
 from rubble.solver import solve

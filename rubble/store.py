@@ -29,7 +29,6 @@ class Tables(NamedTuple):
     """What follows from the plates, beside their motion."""
 
     pieces: Pieces
-    numbers: IntArray  #: (p,) numbers of the pieces
     hulls: Hulls
     mass: Array  #: (n,) true mass [kg]
     spin: Array  #: (n, 3, 3) true inertia [kg m2]
@@ -125,6 +124,7 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
     corners = [p.prism.polygon + p.centre[::2] for _, p in pieces]
     return Tables(
         pieces=Pieces(
+            np.array([p.number for _, p in pieces], np.int64),
             owner,
             y,
             width,
@@ -132,7 +132,6 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
             np.cumsum([0, *map(len, corners)], dtype=np.int64),
             np.zeros((len(pieces), 2), np.int64),
         ),
-        numbers=np.array([p.number for _, p in pieces], np.int64),
         hulls=_hulls(plates, pieces, owner, y, width, physics.g),
         mass=np.array([p.mass for p in plates], np.float64),
         spin=np.array([p.spin for p in plates]).reshape(-1, 3, 3),

@@ -19,9 +19,10 @@ from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
 from rubble.plates import kinetic, momenta
-from rubble.rows import GIVES_WAY, Rows, Surface, grown, room
+from rubble.rows import Rows, Surface, grown, room
 from rubble.sections import SectionTable
 from rubble.shore import Yields, edges_of, keep
+from rubble.slots import ROUND_SLOT
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
@@ -173,7 +174,7 @@ class Runner:
     def _surface(self) -> Surface:
         p = self.physics
         bias, mu = 1.0 - BIAS ** (p.substep / p.pace), (coefficient(p.mu_ice_ice), coefficient(p.mu_structure))
-        return Surface(*mu, p.mu_bed, p.restitution, bias, p.slop, GIVES_WAY * p.pace)
+        return Surface(*mu, p.mu_bed, p.restitution, bias, p.slop)
 
     def _known_pressure(self, store: Store) -> Array:
         unknown = np.full(6, np.nan)
@@ -182,9 +183,10 @@ class Runner:
     def _rename(self, new: IntArray) -> None:
         """Slices have new numbers; rows of slices that are gone are no first guess any more."""
         for rows in self._rows:
+            of_slices = rows.point["slot_a"] != ROUND_SLOT
             for end in ("slot_a", "slot_b"):
                 old = rows.point[end]
-                on = (old >= 0) & (old < len(new))
+                on = of_slices & (old >= 0) & (old < len(new))
                 old[on] = np.where(new[old[on]] >= 0, new[old[on]], -5)
 
     def _make_room(self) -> None:

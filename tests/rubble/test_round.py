@@ -8,7 +8,7 @@ import pytest
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Slab
-from rubble.round import _deepest, _spot, closed, depth_at
+from rubble.round import closed, deepest, depth_at, spot_at
 from tests.rubble.cone_scene import WIDTH, H, cone_cut, rectangle
 
 GENERATOR = np.array([(-20.0, 5.0), (-10.0, 5.0), (5.0, 20.0)])  #: of `cone_scene.cone_cut`
@@ -49,7 +49,7 @@ def test_an_edge_stands_deepest_where_sampling_finds_it():
     random, between = np.random.default_rng(12), 0
     for _ in range(1000):
         p, q = random.uniform([-16.0, 4.0, -8.0], [16.0, 13.0, 3.0], (2, 3))
-        found = _deepest(BODY, _spot(BODY, *p), _spot(BODY, *q))
+        found = deepest(BODY, spot_at(BODY, *p), spot_at(BODY, *q))
         s = np.linspace(0.0, 1.0, 501)[:, None]
         depths = [depth_at(BODY, np.hypot(x, y), z)[0] for x, y, z in p + s * (q - p)]
         if 0.0 < max(depths) < 1.0:
