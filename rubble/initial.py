@@ -81,6 +81,7 @@ def settle(
 def rest(layer: RubbleLayer, fronts: Fronts, *, above: bool = False, longest: float = 300.0) -> Pile:
     """Let the blocks come to rest at the sheet as it is now; arguments as in `settle`."""
     domain, layer.domain, layer.runner.planar = layer.domain, Domain(), True
+    layer.table_of_sections.widen(len(layer.runner.body) > 0)
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
     calm = _come_to_rest(layer, fronts, above, longest)
     if layer.runner.bed < -layer.physics.depth:
@@ -88,6 +89,7 @@ def rest(layer: RubbleLayer, fronts: Fronts, *, above: bool = False, longest: fl
         calm = _come_to_rest(layer, fronts, above, longest)
     time, layer.time, layer.runner.planar, layer.domain = layer.time, 0.0, False, domain
     layer.set_form_drag(layer.physics.form_drag)
+    layer.table_of_sections.widen(False)
     if calm > CALM:
         raise RuntimeError(
             f"initial rubble has not settled after {longest:g} s: kinetic over potential energy is "
@@ -97,12 +99,12 @@ def rest(layer: RubbleLayer, fronts: Fronts, *, above: bool = False, longest: fl
 
 
 def _come_to_rest(layer: RubbleLayer, fronts: Fronts, above: bool, longest: float) -> float:
-    """Advance until nothing moves; how calm it is."""
+    """Advance until nothing moves at both ends of a window, whose forces are those at rest; how calm it is."""
     half = 0.5 * sqrt(layer.physics.thickness / layer.physics.g)
-    calm, steps = 1.0, max(1, round((half if above else 0.5) / layer.physics.substep))
-    while calm > CALM and layer.time < longest:
+    before, calm, steps = 1.0, 1.0, max(1, round((half if above else 0.5) / layer.physics.substep))
+    while max(before, calm) > CALM and layer.time < longest:
         layer.advance(steps)
-        calm = _calm(layer, fronts, above)
+        before, calm = calm, _calm(layer, fronts, above)
         if above:
             layer.store.plates.velocity[:-1] *= 1.0 - THICK_AIR
     return calm

@@ -12,7 +12,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 
 from rubble.arrays import Array, IntArray
 from rubble.compiled import compiled
-from rubble.cut import Solids
+from rubble.cut import Cut, Solids
 from rubble.gather import Sections
 from rubble.moving import ASIDE
 from rubble.physics import RubblePhysics
@@ -41,12 +41,13 @@ class SectionTable:
         self.slices = _rows(0)
         self.changed = True  #: sections or sheets have come or gone
         self._aside = 0.0  #: how far the structure has gone along y [m]
+        self._wide = False  #: see `widen`
 
     def section(self, key: int) -> Section:
         """The section with this number, made when first asked for."""
         if key not in self.by_key:
             y = self.origin + key * self.pitch
-            own = Section(self.physics, self.solids(y - self._aside), y, self.pitch)
+            own = Section(self.physics, self._cut(y), y, self.pitch)
             own.aside = self._aside
             self.by_key[key] = own
             self.by_key = dict(sorted(self.by_key.items()))
@@ -57,9 +58,27 @@ class SectionTable:
         """The structure has gone so far along y [m]: where that is far for a section, it is cut anew."""
         if abs(way - self._aside) <= ASIDE * self.pitch:
             return
-        self._aside, self.changed = way, True
+        self._aside = way
+        self._cut_all_anew()
+
+    def widen(self, wide: bool) -> None:
+        """Whether a section shows a body of revolution where it is widest between the borders of the section.
+
+        Blocks that keep their plane do not come to stand in it to the side of their middle.
+        """
+        if wide != self._wide:
+            self._wide = wide
+            self._cut_all_anew()
+
+    def _cut_all_anew(self) -> None:
+        self.changed = True
         for section in self.by_key.values():
-            section.cut_anew(self.solids(section.y - way), way)
+            section.cut_anew(self._cut(section.y), self._aside)
+
+    def _cut(self, y: float) -> Cut:
+        """The structure in the plane y."""
+        y -= self._aside
+        return self.solids(np.copysign(max(abs(y) - 0.5 * self.pitch, 0.0), y) if self._wide else y)
 
     def in_use(self, store: Store) -> list[int]:
         """Numbers of the sections that the plates stand in now, ascending."""

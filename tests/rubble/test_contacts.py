@@ -168,7 +168,7 @@ def jam(k, travel, *, windows=60, applied=True):
 
 @pytest.mark.parametrize(("k", "travel"), [(1e7, 0.03), (1e7, 0.06), (1e9, 0.03)])
 def test_a_jammed_block_is_pressed_with_the_sheets_stiffness_and_no_more(k, travel):
-    wall, sheet = jam(k, travel)
+    wall, sheet = jam(k, travel, windows=60 if k < 1e8 else 120)  # a stiff sheet takes its time to be moved back
     assert k * (travel - 0.005 * H) < wall <= 1.001 * k * travel  # a part of the travel may stay as overlap
     assert k > 1e8 or wall == pytest.approx(k * travel, rel=0.02)
     assert sheet == pytest.approx(-wall, rel=1e-6 if k < 1e8 else 1e-2)  # 30 MN still shake a block of 45 t

@@ -8,6 +8,7 @@ import pytest
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Slab
+from rubble.plates import orient_all
 from rubble.round import closed, deepest, depth_at, spot_at
 from tests.rubble.cone_scene import WIDTH, H, cone_cut, rectangle
 
@@ -58,28 +59,39 @@ def test_an_edge_stands_deepest_where_sampling_finds_it():
     assert between > 50
 
 
-def passing(generator):
+BOX = np.array(list(itertools.product((-2.25, 2.25), (-WIDTH, WIDTH), (-H / 2, H / 2))))  #: corners of the block
+
+
+def deepest_corner(plates):
+    """How deep a corner of the block stands in the cone [m]."""
+    corners = plates.position[0] + BOX @ plates.rotation[0].T
+    return max(depth_at(BODY, np.hypot(x, y), z)[0] for x, y, z in corners)
+
+
+def passing(generator, pitch, yaw=0.0):
     """A block that is carried along the flank of the cone, 11 m to the side; depths of its corners in the cone."""
-    layer = RubbleLayer(STILL, 2.0 * WIDTH, solids=cone_cut, generator=generator)
-    outline, depths = rectangle(-18.5, -3.2, -14.0, -0.2), []
-    layer.add_block(1, Slab(outline, np.array([-18.5, -14.0]), np.array([2.0 * WIDTH]), 846.0), (1.0, 0.0), y=7.0)
-    plate = layer.store.list[0]
+    layer = RubbleLayer(STILL, pitch, solids=cone_cut, generator=generator)
+    outline, depths = rectangle(-20.25, -3.2, -15.75, -0.2), []
+    layer.add_block(1, Slab(outline, np.array([-20.25, -15.75]), np.array([2.0 * WIDTH]), 846.0), (1.0, 0.0), y=11.0)
+    plate, plates = layer.store.list[0], layer.store.plates
     layer.store.take(plate)
     plate.thrust[:3] = plate.mass * np.array([0.2, 0.0, 0.2])  # against the cone, and up
     layer.store.add(plate)
+    plates = layer.store.plates
+    plates.quaternion[0] = np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)
+    orient_all(plates)
+    assert deepest_corner(plates) < 0.0
     while plate.position[0] < -2.0 and layer.time < 60.0:
         layer.advance(10)
-        corners = plate.outline
-        y = plate.position[1]
-        depths.append(max(depth_at(BODY, np.hypot(x, y), z)[0] for x, z in corners))
+        depths.append(deepest_corner(layer.store.plates))
     return np.array(depths), layer
 
 
-def test_a_block_that_passes_the_flank_stays_outside_the_cone():
-    """In its section's plane alone it would stand metres inside when it comes to the next one."""
-    depths, layer = passing(GENERATOR)
+@pytest.mark.parametrize(("pitch", "yaw"), [(2.0 * WIDTH, 0.0), (WIDTH, 0.0), (WIDTH, 0.5), (0.5 * WIDTH, -0.7)])
+def test_a_block_that_passes_the_flank_stays_outside_the_cone(pitch, yaw):
+    """In the planes of sections alone it would stand metres inside; seen by one of them or by several."""
+    depths, layer = passing(GENERATOR, pitch, yaw)
     assert depths.max() < 0.01 * H
-    assert layer.store.list[0].position[1] > 3.0 * WIDTH + 1.0  # the next section has it
     assert layer.store.list[0].position[0] > -2.0
-    wrong = passing(None)[0]
-    assert wrong.max() > 0.1 * H
+    wrong = passing(None, pitch, yaw)[0]
+    assert wrong.max() > 0.03 * H
