@@ -74,7 +74,7 @@ class Section:
 
     def cut_anew(self, cut: Cut, aside: float) -> None:
         """The structure has gone along y by ``aside`` [m]."""
-        self.space.remove(*self.space.static_body.shapes)
+        self.space.remove(*[s for s in self.space.shapes if s.body is self.space.static_body])
         self.cut, self.slopes, self.aside = cut, cut.slopes, aside
         self._stand()
 
