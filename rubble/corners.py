@@ -39,7 +39,7 @@ def go_on_from(rows: Rows, c: int, old: Rows, last: int, before: int, cut: bool)
 
 @compiled(nogil=True)
 def bounds(scene: Scene, rows: Rows, start: int, end: int, width: float) -> None:
-    """What contacts of ice of a width [m] carry before they crush: strength times width times length, shared by them."""
+    """What contacts of ice of a width [m] carry until it crushes: strength times width times length, shared by them."""
     left, right, low, high, length = np.inf, -np.inf, np.inf, -np.inf, scene.shortest
     for c in range(start, end):
         point = rows.point[c]

@@ -31,7 +31,7 @@ AXIS = 1e-9  #: distance from the axis below which a point has no bearing, in ra
 
 
 class Prism(NamedTuple):
-    """A piece in the axes of the structure: o + a x + b y + c z, with (x, z) in its outline and \\|y\\| <= half."""
+    """A piece in the axes of the structure: o + a x + b y + c z, with (x, z) in its outline and y between +- half."""
 
     origin: tuple[float, float, float]
     a: tuple[float, float, float]

@@ -63,6 +63,7 @@ def depth_at(body: Array, rho: float, z: float) -> tuple[float, float, float]:
 
 @compiled(nogil=True)
 def spot_at(body: Array, x: float, y: float, z: float) -> Spot:
+    """A point in the axes of the body."""
     depth, n_rho, n_z = depth_at(body, np.hypot(x, y), z)
     return Spot(x, y, z, depth, n_rho, n_z)
 
