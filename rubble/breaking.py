@@ -39,17 +39,13 @@ class Breaking:
 
     def begin(self, store: Store) -> Loaded:
         """Plates that may break, with what has been summed of their loads."""
-        spans = [(i, p, p.span) for i, p in enumerate(store.list)] if np.isfinite(self.ice.strength) else []
-        found = [(i, p, s) for i, p, s in spans if np.diff(s).max() >= SHORTEST * self.ice.thickness]
-        row = np.full(len(store.list) + 1, -1, np.int64)
-        row[[i for i, _, _ in found]] = np.arange(len(found))
+        span, row = store.tables.told.span, np.full(len(store.list) + 1, -1, np.int64)
+        long = (span[..., 1] - span[..., 0]).max(axis=1) >= SHORTEST * self.ice.thickness
+        found = np.flatnonzero(long & np.isfinite(self.ice.strength))
+        row[found] = np.arange(len(found))
         none = 0.0, np.zeros((2, CELLS + 1, 3))
-        loads = [self._known.get(p.id, none)[1] for _, p, _ in found]
-        return Loaded(
-            row,
-            np.array([s for _, _, s in found]).reshape(-1, 2, 2),
-            np.array(loads).reshape(-1, 2, CELLS + 1, 3),
-        )
+        loads = [self._known.get(store.list[i].id, none)[1] for i in found.tolist()]
+        return Loaded(row, span[found], np.array(loads).reshape(-1, 2, CELLS + 1, 3))
 
     def end(self, store: Store, loaded: Loaded, window: float) -> list[tuple[Plate, Array]]:
         """Plates that break at the end of a window, with stress, axis and place as `bending.judge` gives them."""

@@ -212,8 +212,9 @@ class Runner:
         if not finite.all():
             number = store.list[int(np.argmin(finite))].id
             raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
-        tables, planes, align = store.tables, list(sections.by_key.values()), self.physics.align_tolerance
-        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.moving, align)
+        update_phases(
+            store.list, store.plates, store.tables.axes, store.tables.sums, sections.slices, sections.slopes, self.moving
+        )
 
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""
