@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rubble.arrays import Array
-from rubble.bending import CELLS, Ice, Loaded, judge
+from rubble.bending import CELLS, Ice, Loaded, judge_all
 from rubble.geometry import area_moments, clip
 from rubble.physics import RubblePhysics
 from rubble.piece import Piece, Plate, Start, prism_at
@@ -49,18 +49,15 @@ class Breaking:
 
     def end(self, store: Store, loaded: Loaded, window: float) -> list[tuple[Plate, Array]]:
         """Plates that break at the end of a window, with stress, axis and place as `bending.judge` gives them."""
-        known, self._known = self._known, {}
-        found = []
-        for i in np.flatnonzero(loaded.row[:-1] >= 0).tolist():
-            plate, row = store.list[i], int(loaded.row[i])
-            time = known[plate.id][0] + window if plate.id in known else window
-            if time < self.physics.breaking_time * (1.0 - 1e-9):
-                self._known[plate.id] = time, loaded.impulse[row]
-                continue
-            worst = judge(i, row, store.plates, store.tables.pieces, loaded, time, self.ice)
-            if worst[0] >= 1.0:
-                found.append((plate, worst))
-        return found
+        known, self._known, new = self._known, {}, (0.0, np.empty(0))
+        who = np.flatnonzero(loaded.row[:-1] >= 0)
+        plates = [store.list[i] for i in who.tolist()]
+        time = np.array([known.get(p.id, new)[0] + window for p in plates])
+        due = time >= self.physics.breaking_time * (1.0 - 1e-9)
+        for k in np.flatnonzero(~due).tolist():
+            self._known[plates[k].id] = float(time[k]), loaded.impulse[k]
+        worst = judge_all(who, due, store.plates, store.tables.pieces, loaded, time, self.ice)
+        return [(plates[k], worst[k]) for k in np.flatnonzero(worst[:, 0] >= 1.0).tolist()]
 
 
 def parts_of(plate: Plate, axis: int, place: float, physics: RubblePhysics) -> list[list[tuple[Prism, Array]]]:

@@ -52,9 +52,7 @@ def update_phases(
 
 
 @compiled(nogil=True)
-def _align(
-    aligned: BoolArray, plates: Plates, axes: Records, slices: Slices, slopes: Slopes, moving: Moving
-) -> None:
+def _align(aligned: BoolArray, plates: Plates, axes: Records, slices: Slices, slopes: Slopes, moving: Moving) -> None:
     """Marks plates that lie along the slope of a section that is nearest to them, if one is near."""
     for s in range(slices.plate.shape[0]):
         k, i = slices.plate[s], slices.section[s]

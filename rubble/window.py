@@ -212,9 +212,8 @@ class Runner:
         if not finite.all():
             number = store.list[int(np.argmin(finite))].id
             raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
-        update_phases(
-            store.list, store.plates, store.tables.axes, store.tables.sums, sections.slices, sections.slopes, self.moving
-        )
+        t, slices, slopes = store.tables, sections.slices, sections.slopes
+        update_phases(store.list, store.plates, t.axes, t.sums, slices, slopes, self.moving)
 
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""

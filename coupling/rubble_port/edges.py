@@ -11,7 +11,7 @@ from rubble.sheet import Sheets
 
 
 def sheets(edges: Sequence[SheetEdge], carried: SheetForces, thickness: float) -> Sheets:
-    """Edges of a sheet of this thickness [m]; each answers already to those forces ``carried`` that are on its nodes."""
+    """Edges of a sheet of this thickness [m]; each answers already to forces ``carried`` that are on its nodes."""
     applied = np.zeros((len(edges), 2))
     for k, e in enumerate(edges if len(carried.nodes) else ()):
         applied[k] = carried.force[np.isin(carried.nodes, e.nodes)].sum(axis=0)[::2]

@@ -93,7 +93,7 @@ class CrackingSheet(ExplicitSheet):
         return replace(self.standing, lean=self.engine.lean_strain())
 
     def _ease(self) -> None:
-        self._set_cells()
+        """The limit is that of the layers: no cell carries more."""
 
     def _begin_cracked(self, cells: IntArray, angle: Array) -> None:
         for cell, normal in zip(cells.tolist(), angle.tolist(), strict=True):
@@ -143,12 +143,7 @@ class CrackingSheet(ExplicitSheet):
     def _parted(self) -> BoolArray:
         """Layered cells whose crack is through, pressed by nothing, and open or slipped by h/2, (count,)."""
         layered = self.engine.layered
-        if not layered.count:
-            return np.zeros(0, bool)
-        through, opening, slip = layered.parting(self.grid.d)
-        h = self.ice.h * self.engine.varied.thickness[layered.cell][:, None]
-        loose = through & (layered.thrust <= 0.0) & (np.maximum(opening, slip) > 0.5 * h)
-        return np.asarray((loose | (slip > h)).any(axis=1))
+        return layered.parted(self.grid.d, self.ice.h * self.engine.varied.thickness[layered.cell])
 
     def let_go(self, t: float, contact: EdgeContact, out: Outcome, release: Release) -> None:
         """At the start of a window: pieces that nothing presses any more, and those that have turned too far."""

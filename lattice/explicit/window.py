@@ -37,9 +37,7 @@ class Window:
         self._sum_up()
 
     @classmethod
-    def begin(
-        cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int, held: BoolArray
-    ) -> Window:
+    def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int, held: BoolArray) -> Window:
         """A window that begins with this state; ``columns`` nodes across, of which those ``held`` (n,) stand still."""
         impulse, q, before = (np.zeros((len(start.q), 3)) for _ in range(3))
         load, push = point_forces(loads, columns), np.zeros((len(loads), 2))
