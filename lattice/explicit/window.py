@@ -41,7 +41,7 @@ class Window:
         """A window that begins with this state; ``columns`` nodes across, of which those ``held`` (n,) stand still."""
         impulse, q, before = (np.zeros((len(start.q), 3)) for _ in range(3))
         load, push = point_forces(loads, columns), np.zeros((len(loads), 2))
-        return cls(t, start, loads, load, contact, columns, impulse, q, push, held, before)
+        return cls(t, start, loads, load, contact, columns, impulse=impulse, q=q, push=push, held=held, before=before)
 
     def keep(self, present: BoolArray) -> None:
         """Takes the loads off nodes that have left."""
