@@ -107,7 +107,7 @@ class ExplicitSheet(BookedFloe):
         start, present, out = self.state, self.present.copy(), Outcome()
         self.let_go(t, contact, out, release)
         keep(loads, self.present)
-        window = Window.begin(t, start, loads, contact, self.grid.ny)
+        window = Window.begin(t, start, loads, contact, self.grid.ny, self.held)
         self._begin(window)
         done = 0
         while done < self.engine.sub_steps:
@@ -140,10 +140,10 @@ class ExplicitSheet(BookedFloe):
         e, contact = self.engine, w.contact
         steps = min(self.block, e.sub_steps - done, self._meet(w, done))
         touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
-        _, before = e.displacement()
+        e.deflections(w.before)
         out = e.march(steps, w.load, touch, self._lively)
         time = out.steps * e.dt
-        w.note(time, before, e.displacement()[1])
+        e.add_path(time, w.before, w.q)
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
         self._hold(w, time, out.hold - self.energy.on_held(contact.nodes, out.contact))

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from lattice.grid import Array, BoolArray
+from lattice.grid import Array, BoolArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -19,9 +19,9 @@ class NodeLoad:
     force_u: Array  #: (n, 2) on u_x, u_y [N]
     force_q: Array  #: (n, 3) on w [N], phi_x, phi_y [N m]
 
-    def keep(self, present: BoolArray) -> None:
+    def drop(self, nodes: IntArray) -> None:
         """Takes the force off nodes that are no longer in the lattice."""
-        self.force_u[~present], self.force_q[~present] = 0.0, 0.0
+        self.force_u[nodes], self.force_q[nodes] = 0.0, 0.0
 
     @property
     def acts(self) -> bool:
@@ -54,8 +54,9 @@ def keep(loads: Loads, present: BoolArray) -> None:
     """Takes all loads off nodes that are no longer in the lattice. ValueError if two have the same name."""
     if len({load.name for load in loads}) < len(loads):
         raise ValueError(f"two loads of one name among {', '.join(load.name for load in loads)}: name each differently")
+    gone = np.flatnonzero(~present)
     for load in loads:
-        load.keep(present)
+        load.drop(gone)
 
 
 def total(loads: Loads, nodes: int) -> tuple[Array, Array]:

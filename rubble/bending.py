@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray
+from rubble.arrays import Array, BoolArray, IntArray
 from rubble.compiled import compiled
 from rubble.plates import Plates, turn_back
 from rubble.rows import ICE, Rows
@@ -128,6 +128,18 @@ def judge(k: int, row: int, plates: Plates, pieces: Pieces, loaded: Loaded, time
             if stress > found[0]:
                 found[0], found[1], found[2] = stress, d, low + c * step
     return found
+
+
+@compiled(nogil=True)
+def judge_all(
+    who: IntArray, due: BoolArray, plates: Plates, pieces: Pieces, loaded: Loaded, time: Array, ice: Ice
+) -> Array:
+    """What `judge` says of those plates ``who`` (m,), all that are loaded, whose turn it is; 0 of others, (m, 3)."""
+    out = np.zeros((who.shape[0], 3))
+    for k in range(who.shape[0]):
+        if due[k]:
+            out[k] = judge(who[k], k, plates, pieces, loaded, time[k], ice)
+    return out
 
 
 @compiled(nogil=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rubble.arrays import Array
-from rubble.bending import CELLS, Ice, Loaded, judge
+from rubble.bending import CELLS, Ice, Loaded, judge_all
 from rubble.geometry import area_moments, clip
 from rubble.physics import RubblePhysics
 from rubble.piece import Piece, Plate, Start, prism_at
@@ -39,32 +39,25 @@ class Breaking:
 
     def begin(self, store: Store) -> Loaded:
         """Plates that may break, with what has been summed of their loads."""
-        spans = [(i, p, p.span) for i, p in enumerate(store.list)] if np.isfinite(self.ice.strength) else []
-        found = [(i, p, s) for i, p, s in spans if np.diff(s).max() >= SHORTEST * self.ice.thickness]
-        row = np.full(len(store.list) + 1, -1, np.int64)
-        row[[i for i, _, _ in found]] = np.arange(len(found))
+        span, row = store.tables.told.span, np.full(len(store.list) + 1, -1, np.int64)
+        long = (span[..., 1] - span[..., 0]).max(axis=1) >= SHORTEST * self.ice.thickness
+        found = np.flatnonzero(long & np.isfinite(self.ice.strength))
+        row[found] = np.arange(len(found))
         none = 0.0, np.zeros((2, CELLS + 1, 3))
-        loads = [self._known.get(p.id, none)[1] for _, p, _ in found]
-        return Loaded(
-            row,
-            np.array([s for _, _, s in found]).reshape(-1, 2, 2),
-            np.array(loads).reshape(-1, 2, CELLS + 1, 3),
-        )
+        loads = [self._known.get(store.list[i].id, none)[1] for i in found.tolist()]
+        return Loaded(row, span[found], np.array(loads).reshape(-1, 2, CELLS + 1, 3))
 
     def end(self, store: Store, loaded: Loaded, window: float) -> list[tuple[Plate, Array]]:
         """Plates that break at the end of a window, with stress, axis and place as `bending.judge` gives them."""
-        known, self._known = self._known, {}
-        found = []
-        for i in np.flatnonzero(loaded.row[:-1] >= 0).tolist():
-            plate, row = store.list[i], int(loaded.row[i])
-            time = known[plate.id][0] + window if plate.id in known else window
-            if time < self.physics.breaking_time * (1.0 - 1e-9):
-                self._known[plate.id] = time, loaded.impulse[row]
-                continue
-            worst = judge(i, row, store.plates, store.tables.pieces, loaded, time, self.ice)
-            if worst[0] >= 1.0:
-                found.append((plate, worst))
-        return found
+        known, self._known, new = self._known, {}, (0.0, np.empty(0))
+        who = np.flatnonzero(loaded.row[:-1] >= 0)
+        plates = [store.list[i] for i in who.tolist()]
+        time = np.array([known.get(p.id, new)[0] + window for p in plates])
+        due = time >= self.physics.breaking_time * (1.0 - 1e-9)
+        for k in np.flatnonzero(~due).tolist():
+            self._known[plates[k].id] = float(time[k]), loaded.impulse[k]
+        worst = judge_all(who, due, store.plates, store.tables.pieces, loaded, time, self.ice)
+        return [(plates[k], worst[k]) for k in np.flatnonzero(worst[:, 0] >= 1.0).tolist()]
 
 
 def parts_of(plate: Plate, axis: int, place: float, physics: RubblePhysics) -> list[list[tuple[Prism, Array]]]:

@@ -81,8 +81,13 @@ if FOLDER is None:
     _say_that_nothing_is_kept()
 
 
-def compiled(*signature: str, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there."""
+def compiled(*signature: str, borrows: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there.
+
+    A kernel that ``borrows`` makes no array: references to those that it is given are not counted. Where it is called
+    for each of many rows with tables of a hundred arrays, counting takes longer than the rest.
+    """
+    options |= {"_nrt": not borrows}
     if signature:
         return lambda kernel: _kept(_njit(*signature, cache=FOLDER is not None, **options), kernel)
     return lambda kernel: _linked(kernel, options)

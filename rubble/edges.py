@@ -30,7 +30,7 @@ def still_edges(nodes: Records, offset: IntArray, *, yielding: bool) -> Edges:
     return Edges(nodes, offset, motion, shift, carried, np.zeros((2, side, side)), np.zeros(count, np.int64))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def locate(point: Record, nodes: Records, first: int, end: int) -> None:
     """The nodes first to end of the sheet between which a point lies; beyond the ends the line goes on straight.
 
@@ -48,7 +48,7 @@ def locate(point: Record, nodes: Records, first: int, end: int) -> None:
         point.rear, point.weight, point.lever = k + 1, w, (w * front.z + (1.0 - w) * rear.z - point.z) / span
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def between(
     point: Record, front: tuple[float, float], rear: tuple[float, float], origin: float = 0.0
 ) -> tuple[float, float]:
@@ -62,7 +62,7 @@ def between(
     return x, w * front[1] + (1.0 - w) * rear[1]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def sheet_speed(nodes: Records, moves: Array, point: Record, way: Record) -> float:
     """Speed of the sheet's end of a row along one of its directions; ``moves`` as `Edges.motion`."""
     if point.edge < 0:
@@ -74,7 +74,7 @@ def sheet_speed(nodes: Records, moves: Array, point: Record, way: Record) -> flo
     return found
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def push_edge(yields: Array, motion: Array, e: int, x: float, z: float) -> None:
     """An impulse (x, z) of the rubble on the sheet in section e moves the edge in all sections."""
     for f in range(yields.shape[1]):
@@ -82,7 +82,7 @@ def push_edge(yields: Array, motion: Array, e: int, x: float, z: float) -> None:
         motion[f, 1] += yields[1, e, f] * z
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def push_sheet(edges: Edges, point: Record, way: Record, j: float) -> None:
     """An impulse j along a direction on the plate of a row, and the opposite one on its sheet."""
     x, y, z = -j * way.x, -j * way.y, -j * way.z
@@ -96,7 +96,7 @@ def push_sheet(edges: Edges, point: Record, way: Record, j: float) -> None:
     push_edge(edges.yields, edges.motion, point.edge, x, z)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def lightness(edges: Edges, point: Record, x: float, y: float, z: float) -> float:
     """Speed of the sheet's end of a row along (x, y, z) for a unit impulse there."""
     f, r, w, e = edges.nodes[point.front], edges.nodes[point.rear], point.weight, point.edge
@@ -108,7 +108,7 @@ def lightness(edges: Edges, point: Record, x: float, y: float, z: float) -> floa
     return float(total)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def deeper_on_sheet(edges: Edges, section: int, point: Record, nx: float, nz: float) -> float:
     """By how much a contact with the sheet is deeper than with its outline: nodes have moved since that was made."""
     nodes, first = edges.nodes, edges.offset[section]

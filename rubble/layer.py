@@ -27,7 +27,8 @@ from rubble.readings import Readings
 from rubble.round import closed
 from rubble.section import Section
 from rubble.sections import SectionTable
-from rubble.sheet import MEETS, SheetBody, SheetMotion
+from rubble.sheet import MEETS, SheetBody, SheetMotion, Sheets
+from rubble.shore import follow
 from rubble.store import Store
 from rubble.window import NO_BODY, Runner
 
@@ -151,11 +152,17 @@ class RubbleLayer(Readings):
 
     def set_sheet(self, section: int, motion: SheetMotion) -> None:
         """Where the sheet is in a section at the start of a window, and how it moves."""
-        own = self.section(section)
-        if own.sheet is None:
-            own.sheet = SheetBody(own.space, self.physics, motion)
-            self.table_of_sections.changed = True
-        own.sheet.follow(motion)
+        self.set_sheets([section], Sheets.of(motion))
+
+    def set_sheets(self, keys: Sequence[int], sheets: Sheets) -> None:
+        """The same of several sections at once."""
+        bodies = []
+        for own in map(self.section, keys):
+            if own.sheet is None:
+                own.sheet = SheetBody(own.space)
+                self.table_of_sections.changed = True
+            bodies.append(own.sheet)
+        follow(bodies, sheets, self.physics.slop / 2)
 
     def remove_sheet(self, section: int) -> None:
         """The lattice has no ice in this section any more."""

@@ -41,7 +41,7 @@ class Prism(NamedTuple):
     half: float  #: of its width [m]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _own(scene: Scene, k: int, x: float, y: float, z: float) -> tuple[float, float, float]:
     """A point of plate k, in its axes, in those of the structure [m]."""
     p, moving = scene.plates.position[k], scene.moving
@@ -67,7 +67,7 @@ def _prism(scene: Scene, i: int) -> Prism:
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _at(prism: Prism, x: float, y: float, z: float) -> tuple[float, float, float]:
     """A point of a prism in the axes of the structure [m]."""
     o, a, b, c = prism.origin, prism.a, prism.b, prism.c
@@ -78,7 +78,7 @@ def _at(prism: Prism, x: float, y: float, z: float) -> tuple[float, float, float
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _is_far(body: Array, widest: float, prism: Prism) -> bool:
     """Whether a prism is too far from the axis, or below or above the body, to meet it."""
     reach = 0.0
@@ -89,7 +89,7 @@ def _is_far(body: Array, widest: float, prism: Prism) -> bool:
     return far
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _put(scene: Scene, rows: Rows, c: int, spot: tuple[float, float, float], n: tuple[float, float, float]) -> None:
     """Place and directions of a row from a point and a normal, both in the axes of the structure."""
     moving, point = scene.moving, rows.point[c]
@@ -99,7 +99,7 @@ def _put(scene: Scene, rows: Rows, c: int, spot: tuple[float, float, float], n: 
     set_normal(rows, c, x, n[1] + moving.place[5] * n[0] - moving.place[3] * n[2], z)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _on_surface(scene: Scene, widest: float, rows: Rows, c: int, spot: Spot) -> None:
     """A row where ice stands in the body, whose greatest radius is ``widest`` [m]: half-way to the surface."""
     rho, half = np.hypot(spot.x, spot.y), 0.5 * spot.depth
@@ -109,7 +109,7 @@ def _on_surface(scene: Scene, widest: float, rows: Rows, c: int, spot: Spot) -> 
     _put(scene, rows, c, (spot.x + half * n[0], spot.y + half * n[1], spot.z + half * n[2]), n)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _rim(scene: Scene, rows: Rows, c: int, prism: Prism, edge: int, side: float) -> bool:
     """A row where the rim between two pieces of the generator passes the middle of a prism, on either side.
 
@@ -153,7 +153,7 @@ def _corners(body: Array, prism: Prism) -> list[Spot]:
     return spots
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _ends(edge: int, n: int) -> tuple[int, int]:
     """Corners between which an edge of a prism goes: n at one end, n at the other, n from end to end."""
     if edge < 2 * n:

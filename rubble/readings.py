@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rubble import table
-from rubble.arrays import Array
+from rubble.arrays import Array, IntArray
 from rubble.piece import Plate
 from rubble.sections import SectionTable
 from rubble.store import Store
@@ -31,6 +31,10 @@ class Readings:
         """Number of the section that holds y."""
         return floor((y - self.origin) / self.pitch + 0.5)
 
+    def keys_at(self, y: Array) -> IntArray:
+        """The same of several places (n,)."""
+        return np.floor((y - self.origin) / self.pitch + 0.5).astype(np.int64)
+
     @property
     def blocks(self) -> list[Plate]:
         """All plates in the order of their numbers."""
@@ -48,7 +52,7 @@ class Readings:
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """All plates as arrays by name, in the order of their numbers; see `table.columns`."""
-        return table.columns(self.store, self.key_at, self.runner.window)
+        return table.columns(self.store, self.keys_at, self.runner.window)
 
     def table(self) -> SimpleNamespace:
         """The same with dots."""
@@ -61,7 +65,7 @@ class Readings:
 
     def load_of(self, *, sliding: bool) -> Array:
         """Sum of the mean forces of the plates that slide, or of those that rotate (3,) [N]."""
-        phase = np.array([p.sliding for p in self.blocks], np.bool_) == sliding
+        phase = table.sliding(self.store) == sliding
         return np.asarray(self.load_on_structure[phase].sum(axis=0))
 
     @property

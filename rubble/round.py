@@ -33,7 +33,7 @@ class Spot(NamedTuple):
     n_z: float
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def depth_at(body: Array, rho: float, z: float) -> tuple[float, float, float]:
     """How deep a point stands in the body whose closed generator is (k, 2) (r, z) [m], and the normal; -1 outside."""
     last = body.shape[0] - 1
@@ -61,14 +61,14 @@ def depth_at(body: Array, rho: float, z: float) -> tuple[float, float, float]:
     return best, n_rho, n_z
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def spot_at(body: Array, x: float, y: float, z: float) -> Spot:
     """A point in the axes of the body."""
     depth, n_rho, n_z = depth_at(body, np.hypot(x, y), z)
     return Spot(x, y, z, depth, n_rho, n_z)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def deepest(body: Array, p: Spot, q: Spot) -> Spot:
     """The point between two corners that stands deepest in the body; one of them if none between stands deeper.
 
@@ -97,7 +97,7 @@ def deepest(body: Array, p: Spot, q: Spot) -> Spot:
     return best
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def turns_outwards(body: Array, k: int) -> bool:
     """Whether the generator has a convex corner there."""
     ar, az = body[k, 0] - body[k - 1, 0], body[k, 1] - body[k - 1, 1]

@@ -122,7 +122,7 @@ def set_normal(rows: Rows, c: int, x: float, y: float, z: float) -> float:
     return inverse
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
     """Arms and effective masses of row c from its point, its ends and its directions."""
     point = rows.point[c]
@@ -156,7 +156,7 @@ def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
         way.mass = 1.0 / total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, moving: Moving, surface: Surface, dt: float) -> None:
     """Friction, restitution and shift of rows; the motion is that before the forces of the sub-step.
 

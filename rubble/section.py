@@ -9,7 +9,7 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from rubble.arbiters import PairList, note_pair
-from rubble.arrays import Array, filled
+from rubble.arrays import Array, Records, filled
 from rubble.cut import FACE, Cut
 from rubble.geometry import contiguous
 from rubble.physics import RubblePhysics
@@ -114,7 +114,6 @@ def list_address(section: Section) -> int:
     return int(section.pairs.list.ctypes.data)
 
 
-def faces_of(sections: list[Section]) -> tuple[Any, Any]:
-    """`Cut.bearings` of all sections one after the other, and where each begins."""
-    faces = [s.cut.bearings for s in sections]
+def faces_of(faces: list[Records]) -> tuple[Any, Any]:
+    """Faces of all sections one after the other, and where those of each begin."""
     return np.concatenate([filled(FACE, []), *faces]), np.cumsum([0, *map(len, faces)], dtype=np.int64)

@@ -15,6 +15,7 @@ from rubble.compiled import compiled
 from rubble.cut import Cut, Solids
 from rubble.gather import Sections
 from rubble.moving import ASIDE
+from rubble.phases import Slopes
 from rubble.physics import RubblePhysics
 from rubble.plates import Plates
 from rubble.pointers import address, arbiter_layout, body_layout, set_corners
@@ -144,7 +145,10 @@ class SectionTable:
         self.slots: Slots = slot_table(
             bodies, np.concatenate([np.array(kinds, np.int64), np.arange(len(self.slices.body))])
         )
-        faces, offset = faces_of(sections)
+        faces, offset = faces_of([s.cut.bearings for s in sections])
+        self.slopes = Slopes(
+            np.array([s.y for s in sections]), *faces_of([s.slopes for s in sections]), self.physics.align_tolerance
+        )
         self.for_kernels = Sections(
             np.array([s.y for s in sections]),
             np.array([s.margin for s in sections]),
@@ -165,7 +169,7 @@ class SectionTable:
                 section.pairs.reserve(4 * section.pairs.capacity)
 
     def __getstate__(self) -> dict[str, Any]:
-        gone = ("_made", "_names", "slices", "slots", "for_kernels", "_shapes", "_bodies", "solids")
+        gone = ("_made", "_names", "slices", "slots", "for_kernels", "slopes", "_shapes", "_bodies", "solids")
         return {k: v for k, v in self.__dict__.items() if k not in gone}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

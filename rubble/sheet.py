@@ -20,13 +20,13 @@ the lattice stays where it is stopped.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
 
-from rubble.arrays import Array, record
+from rubble.arrays import Array, IntArray, record, rows
 from rubble.compiled import compiled
-from rubble.physics import RubblePhysics
 from rubble.pointers import address
 
 #: a node of the sheet: place x, z [m]; the same where the outline of the sheet has it, relative to the foremost node of
@@ -63,14 +63,31 @@ class SheetMotion:
         object.__setattr__(self, "velocity", np.array(self.velocity, dtype=np.float64).reshape(m, 2))
 
 
+class Sheets(NamedTuple):
+    """The sheet in k sections in a window, one after the other."""
+
+    x: Array  #: (n,) of the nodes at the start [m]
+    z: Array  #: (n,) middle of the thickness [m]
+    velocity: Array  #: (n, 2) as in `SheetMotion`
+    offset: IntArray  #: (k + 1,) section i has the nodes offset[i] to offset[i + 1]
+    front: Array  #: (k,) x of the foremost points [m]
+    applied: Array  #: (k, 2) F_carried above [N]
+    thickness: float  #: [m]
+
+    @classmethod
+    def of(cls, motion: SheetMotion) -> Sheets:
+        """In one section."""
+        ends, front, applied = np.array([0, len(motion.x)]), np.array([motion.front]), np.array([motion.applied])
+        return cls(motion.x, motion.z, motion.velocity, ends, front, applied, motion.thickness)
+
+
 class SheetBody:
     """Sheet edge of one section: its body, its shapes, and the nodes to which forces return."""
 
-    def __init__(self, space: pymunk.Space, physics: RubblePhysics, motion: SheetMotion) -> None:
-        self.physics = physics
-        self.nodes = np.zeros(len(motion.x), NODE)
+    def __init__(self, space: pymunk.Space) -> None:
+        self.nodes = np.zeros(0, NODE)
         self.place, self.applied = np.zeros(2), np.zeros(2)
-        self._corners = np.zeros((0, 4, 2))
+        self.corners = np.zeros((0, 4, 2))  #: of its shapes
         self.enter(space)
 
     def enter(self, space: pymunk.Space) -> None:
@@ -79,10 +96,10 @@ class SheetBody:
         self.body.position = float(self.place[0]), float(self.place[1])
         self.shapes: list[pymunk.Poly] = []
         space.add(self.body)
-        self._replace_shapes(self._corners)
+        self.replace_shapes(self.corners)
 
     def __getstate__(self) -> dict[str, object]:
-        return {k: v for k, v in self.__dict__.items() if k not in ("space", "body", "shapes")}
+        return {k: v for k, v in self.__dict__.items() if k not in ("space", "body", "shapes", "addresses")}
 
     @property
     def address(self) -> int:
@@ -91,32 +108,11 @@ class SheetBody:
 
     @property
     def impulse(self) -> Array:
-        """(m, 3) on the nodes over the window [N s]."""
-        return np.column_stack([self.nodes[f"impulse_{axis}"] for axis in "xyz"])
+        """(m, 3) on the nodes over the window; a view [N s]."""
+        return rows(self.nodes, "impulse_x", 3)
 
-    def follow(self, motion: SheetMotion) -> None:
-        """Take over the lattice's motion in a window, from its start."""
-        x, z = motion.x, motion.z
-        self.place, self.applied = np.array([x[0], z[0]]), np.array(motion.applied, np.float64)
-        self.nodes = np.zeros(len(x), NODE)
-        self.nodes["x"], self.nodes["z"] = x, z
-        self.nodes["outline_x"], self.nodes["outline_z"] = x - x[0], z - z[0]
-        self.nodes["v_x"], self.nodes["v_z"] = motion.velocity.T
-        corners = sheet_polygons(x, z, motion.front, motion.thickness, self.physics.slop / 2)
-        self._set_shapes(corners - self.place)
-
-    def _set_shapes(self, local: Array) -> None:
-        """New corners (polygons, 4, 2) for the old shapes if their number is the same: contacts keep their history."""
-        if local.shape == self._corners.shape:
-            if np.abs(local - self._corners).max() < SAME * self.physics.thickness:
-                return  # it has only drifted
-            for shape, corners in zip(self.shapes, local.tolist(), strict=True):
-                shape.unsafe_set_vertices(corners)
-        else:
-            self._replace_shapes(local)
-        self._corners = local
-
-    def _replace_shapes(self, local: Array) -> None:
+    def replace_shapes(self, local: Array) -> None:
+        """Other shapes, with corners (polygons, 4, 2): their contacts begin anew."""
         self.space.remove(*self.shapes)
         self.shapes = [pymunk.Poly(self.body, corners) for corners in local.tolist()]
         free = pymunk.ShapeFilter.ALL_MASKS() ^ STRUCTURE_CATEGORY
@@ -124,25 +120,29 @@ class SheetBody:
             shape.collision_type = ICE
             shape.filter = pymunk.ShapeFilter(categories=SHEET_CATEGORY, mask=free)
         self.space.add(*self.shapes)
+        self.addresses = np.array([address(shape._shape) for shape in self.shapes], np.int64)
+        self.corners = local
 
     def remove(self) -> None:
         """Take the sheet out of the section."""
         self.space.remove(*self.shapes, self.body)
 
 
+@compiled(nogil=True)
 def sheet_polygons(x: Array, z: Array, front: float, thickness: float, tolerance: float) -> Array:
     """Corners (p, 4, 2) of the sheet: its nodes joined by straight pieces, as long as they stay within ``tolerance``.
 
     Few long pieces, because a block that slides along the underside catches on the joints. Ahead of the first node
     the sheet goes on straight to ``front``.
     """
-    points = np.column_stack([x, z])
-    if len(x) == 1:  # half a cell on both sides
-        points = np.array([points[0], points[0] - [max(front - x[0], thickness / 3000.0), 0.0]])
+    line = np.empty((max(x.shape[0], 2), 2))
+    line[: x.shape[0], 0], line[: x.shape[0], 1] = x, z
+    if x.shape[0] == 1:  # half a cell on both sides
+        line[1, 0], line[1, 1] = x[0] - max(front - x[0], thickness / 3000.0), z[0]
     if front - x[0] > SAME * thickness:
-        slope = (points[0, 1] - points[1, 1]) / (points[0, 0] - points[1, 0])
-        points[0] = front, points[0, 1] + slope * (front - x[0])
-    pieces: Array = _pieces(points, thickness / 2, tolerance)
+        slope = (line[0, 1] - line[1, 1]) / (line[0, 0] - line[1, 0])
+        line[0, 0], line[0, 1] = front, line[0, 1] + slope * (front - x[0])
+    pieces: Array = _pieces(line, thickness / 2, tolerance)
     return pieces
 
 

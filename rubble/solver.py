@@ -22,7 +22,7 @@ from rubble.plates import Plates
 from rubble.rows import Rows, speed
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _push(way: Record, a: Record, b: Record, ma: float, mb: float, j: float) -> None:
     """An impulse j along a direction on b, and the opposite one on a; ``ma``, ``mb`` inverse masses."""
     x, y, z = j * way.x, j * way.y, j * way.z
@@ -41,7 +41,7 @@ def _push(way: Record, a: Record, b: Record, ma: float, mb: float, j: float) -> 
         a.c -= j * way.ta_z
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
     """Apply the impulses that the rows have kept from the last sub-step."""
     motion, inverse = plates.motion, plates.inverse_mass
@@ -55,7 +55,7 @@ def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
                     push_sheet(edges, point, way, way.impulse)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
     """Take out overlap; ``edge``: how fast the sheet's edge recedes along n. Returns the impulse."""
     new = min(max(point.shift + n.mass * (point.shift_speed - speed(n, a, b) + edge), 0.0), n.impulse)
@@ -66,7 +66,7 @@ def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float,
     return j
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
     """Normal impulse of one row; ``edge``: speed of the sheet along n. Returns by how much it has changed."""
     new = n.impulse + n.mass * (n.target - speed(n, a, b) + edge)
@@ -79,7 +79,7 @@ def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float
     return j
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _friction(
     ways: tuple[Record, Record, Record],
     mu: float,
@@ -107,7 +107,7 @@ def _friction(
     return j, k
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> None:
     """All rows once."""
     motion, shift, inverse = plates.motion, plates.shift, plates.inverse_mass
@@ -136,7 +136,7 @@ def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> 
             push_sheet(edges, point, s, g)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def solve(rows: Rows, count: int, plates: Plates, edges: Edges, iterations: int) -> None:
     """All rows, so many times; the shift of plates and edges starts from none."""
     for i in range(plates.shift.shape[0]):

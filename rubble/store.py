@@ -25,6 +25,16 @@ NARROW = 1.5
 ON_PLATE = ("structure_x", "structure_y", "structure_z", "ice", "sheet", "push", "at_x", "at_y", "at_z")
 
 
+class Told(NamedTuple):
+    """What is told of the plates, beside their motion."""
+
+    ids: IntArray  #: (n,) their numbers
+    width: Array  #: (n,) mean extent along their y axes [m]
+    span: Array  #: (n, 2, 2) from where to where they reach along their x and y axes [m]
+    corners: Array  #: (v, 3) of the outlines of their middle pieces, in their axes [m]
+    offset: IntArray  #: (n + 1,) plate i owns corners[offset[i]:offset[i + 1]]
+
+
 class Tables(NamedTuple):
     """What follows from the plates, beside their motion."""
 
@@ -35,6 +45,7 @@ class Tables(NamedTuple):
     thrust: Array  #: (n, 6) constant force and moment beside the weight [N, N m]
     axes: Records  #: (n,) AXIS
     sums: Array  #: (n, 9) ON_PLATE over the window
+    told: Told
 
 
 class Store:
@@ -137,7 +148,18 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
         spin=np.array([p.spin for p in plates]).reshape(-1, 3, 3),
         thrust=np.array([p.thrust for p in plates]).reshape(-1, 6),
         axes=_axes(plates, physics.thickness),
+        told=_told(plates),
         sums=np.zeros((len(plates), len(ON_PLATE))),
+    )
+
+
+def _told(plates: Sequence[Plate]) -> Told:
+    return Told(
+        ids=np.array([p.id for p in plates], np.int64),
+        width=np.array([p.width for p in plates], np.float64),
+        span=np.array([p.span for p in plates]).reshape(-1, 2, 2),
+        corners=np.concatenate([np.zeros((0, 3)), *(p.middle for p in plates)]),
+        offset=np.cumsum([0, *(len(p.middle) for p in plates)], dtype=np.int64),
     )
 
 

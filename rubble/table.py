@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rubble.arrays import Array
+from rubble.arrays import Array, BoolArray, IntArray
 from rubble.store import Store
 
 
-def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict[str, NDArray[Any]]:
+def columns(store: Store, key_at: Callable[[Array], IntArray], window: float) -> dict[str, NDArray[Any]]:
     """All plates as arrays, in the order of their numbers.
 
     ``id``, ``section`` that holds its centre, ``sliding`` (else rotating), ``mass`` [kg], ``width`` [m],
@@ -21,17 +21,15 @@ def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict
     picture [rad/s], ``load`` (n, 3) mean force on the structure [N]; ``outline`` (v, 2) corners of its middle piece
     [m], of which plate i owns those from ``offset[i]`` to ``offset[i + 1]``.
     """
-    plates, list_ = store.plates, store.list
-    n = len(list_)
-    lengths = np.array([len(p.middle) for p in list_], np.int64)
-    owner, corners = np.repeat(np.arange(n), lengths), np.concatenate([np.zeros((0, 3)), *(p.middle for p in list_)])
-    outlines = plates.position[owner] + np.einsum("vij,vj->vi", plates.rotation[owner], corners)
+    plates, told, n = store.plates, store.tables.told, len(store.list)
+    owner = np.repeat(np.arange(n), np.diff(told.offset))
+    outlines = plates.position[owner] + np.einsum("vij,vj->vi", plates.rotation[owner], told.corners)
     return {
-        "id": np.array([p.id for p in list_], np.int64),
-        "section": np.array([key_at(float(p.position[1])) for p in list_], np.int64),
-        "sliding": np.array([p.sliding for p in list_], np.bool_),
+        "id": told.ids.copy(),
+        "section": key_at(plates.position[:n, 1]),
+        "sliding": sliding(store),
         "mass": store.tables.mass.copy(),
-        "width": np.array([p.width for p in list_], np.float64),
+        "width": told.width.copy(),
         "position": plates.position[:n].copy(),
         "quaternion": plates.quaternion[:n].copy(),
         "angle": np.arctan2(plates.rotation[:n, 2, 0], plates.rotation[:n, 0, 0]),
@@ -41,8 +39,13 @@ def columns(store: Store, key_at: Callable[[float], int], window: float) -> dict
         "load": loads(store, window),
         "bearing": contact_centres(store),
         "outline": np.ascontiguousarray(outlines[:, ::2]),
-        "offset": np.concatenate([[0], np.cumsum(lengths)]),
+        "offset": told.offset.copy(),
     }
+
+
+def sliding(store: Store) -> BoolArray:
+    """Which plates slide, (n,)."""
+    return np.array([p.sliding for p in store.list], np.bool_)
 
 
 def loads(store: Store, window: float) -> Array:

@@ -214,8 +214,8 @@ class Runner:
         if not finite.all():
             number = store.list[int(np.argmin(finite))].id
             raise RuntimeError(f"block {number}, t = {time:g} s: its motion is not finite; shorten rubble.substep")
-        tables, planes, align = store.tables, list(sections.by_key.values()), self.physics.align_tolerance
-        update_phases(store.list, tables.axes, tables.sums, sections.slices, planes, self.moving, align)
+        t, slices, slopes = store.tables, sections.slices, sections.slopes
+        update_phases(store.list, store.plates, t.axes, t.sums, slices, slopes, self.moving)
 
     def energies(self, store: Store) -> tuple[float, Array]:
         """Kinetic energy of all plates with added mass, and that of weight and water of each (n,) [J]."""

@@ -23,6 +23,7 @@ from coupling.interface import (
     SheetForces,
     Structure,
 )
+from coupling.rubble_port.edges import sheets
 from coupling.rubble_port.events import told
 from coupling.rubble_port.failing import failing
 from coupling.rubble_port.hand_over import Arrivals
@@ -33,7 +34,6 @@ from rubble.energy import energy_terms
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
-from rubble.sheet import SheetMotion
 
 #: of the structure's cut by a section, in thicknesses: 1 mm for ice of 3 m, whose normal is right within 0.6 degrees
 OUTLINE_TOLERANCE = 1.0 / 3000.0
@@ -121,9 +121,7 @@ class RubblePort:
         for key in set(self._edges) - set(edges):
             self.layer.remove_sheet(key)
         self._edges = edges
-        for key, e in edges.items():
-            motion = SheetMotion(e.x, e.z, e.front, e.velocity, self.physics.thickness, _on_edge(carried, e))
-            self.layer.set_sheet(key, motion)
+        self.layer.set_sheets(list(edges), sheets(list(edges.values()), carried, self.physics.thickness))
 
     def begin(self, edges: dict[int, SheetEdge]) -> None:
         """A window in lockstep begins."""
@@ -238,12 +236,6 @@ class RubblePort:
         """Momentum that ice took along which was cleared, and off blocks crushed [N s]."""
         lost = {"cleared": self.layer.gone.momentum, "crushed": self.layer.crushed.momentum}
         return {f"{name}_momentum_{axis}": float(p[k]) for name, p in lost.items() for k, axis in enumerate("xyz")}
-
-
-def _on_edge(forces: SheetForces, edge: SheetEdge) -> tuple[float, float]:
-    """Sum of the forces on one edge, in x and z [N]."""
-    total = forces.force[np.isin(forces.nodes, edge.nodes)].sum(axis=0)
-    return float(total[0]), float(total[2])
 
 
 def _ignore(mass: float) -> None:

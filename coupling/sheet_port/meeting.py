@@ -34,21 +34,23 @@ class Meeting:
         self.load = NodeLoad(RUBBLE, np.zeros((n, 2)), np.zeros((n, 3)))
         mass = np.column_stack((engine.inertia_u.reshape(n, 2), engine.inertia_q.reshape(n, 3)[:, 0]))
         self._lightness = np.where(np.column_stack((engine.held, np.zeros(n, bool))), 0.0, 1.0 / mass)  #: (n, 3) [1/kg]
-        self._velocity = motion.velocities(np.arange(n))
+        self._velocity = motion.all_velocities()
         self._nodes, self._place = np.zeros(0, np.int64), np.zeros((0, 3))
         self.work = 0.0  #: of the forces in this window, in the fixed frame [J]
         self.answer: Callable[[], SheetForces] = SheetForces.none  #: the rubble's sub-step, forces in it
 
     def force(self, nodes: IntArray) -> Array:
         """Forces on nodes since the last meeting, (k, 3) [N]."""
-        return np.column_stack((self.load.force_u[nodes], self.load.force_q[nodes, 0]))
+        out = np.empty((len(nodes), 3))
+        out[:, :2], out[:, 2] = self.load.force_u[nodes], self.load.force_q[nodes, 0]
+        return out
 
     def meet(self, t: float) -> None:
         """The rubble's sub-step from time t [s] on."""
         self._motion.t = t
         self.note()
         forces = self.answer()
-        self._velocity = self._motion.velocities(np.arange(len(self._velocity)))
+        self._velocity = self._motion.all_velocities()
         self.take(forces)
 
     def take(self, forces: SheetForces) -> None:
@@ -83,6 +85,7 @@ class Meeting:
 
     def nodes(self, nodes: IntArray) -> Array:
         """Nodes as the rubble meets them (m, 11): place x, z; velocity; gain; lightness, each x, y, z."""
-        v, light = self._motion.velocities(nodes), self._lightness[nodes]
+        v, light, out = self._motion.velocities(nodes), self._lightness[nodes], np.empty((len(nodes), 11))
         gain = v - self._velocity[nodes] - self.every * self.force(nodes) * light
-        return np.column_stack((self._motion.position(nodes)[:, ::2], v, gain, light))
+        out[:, :2], out[:, 2:5], out[:, 5:8], out[:, 8:] = self._motion.position(nodes)[:, ::2], v, gain, light
+        return out

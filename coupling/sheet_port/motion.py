@@ -43,6 +43,13 @@ class Motion:
         out[:, :2], out[:, 2] = s.u_dot[nodes] + (self.velocity, 0.0), s.q_dot[nodes, 0]
         return out
 
+    def all_velocities(self) -> Array:
+        """Those of all nodes."""
+        s, out = self.sheet.state, np.empty((len(self.sheet.state.q), 3))
+        np.add(s.u_dot, (self.velocity, 0.0), out=out[:, :2])
+        out[:, 2] = s.q_dot[:, 0]
+        return out
+
     def displacement(self, nodes: IntArray) -> Array:
         """How far nodes have come in the last window, (n, 3) [m]."""
         return self.position(nodes) - self._before(nodes)
@@ -65,7 +72,6 @@ class Motion:
         return self._place(nodes, state, t)
 
     def _place(self, nodes: IntArray, s: State, t: float) -> Array:
-        x, y = self.sheet.grid.xy[nodes].T
-        return np.column_stack(
-            (x - self.setback + self.velocity * t + s.u[nodes, 0], y + s.u[nodes, 1], self.z_mid + s.q[nodes, 0])
-        )
+        out = self.sheet.grid.xy[nodes]
+        out[:, 0] = out[:, 0] - self.setback + self.velocity * t
+        return np.hstack((out + s.u[nodes], self.z_mid + s.q[nodes, :1]))

@@ -29,7 +29,19 @@ class Underside:
 
     def edges(self, sections: Mapping[int, float], motion: NodeMotion) -> dict[int, SheetEdge]:
         """Edges where there is ice in front, back to the x given [m], with places and velocities by ``motion``."""
-        return {key: self._section(column, motion, sections[key]) for key, column in self._in_front(sections).items()}
+        columns = self._in_front(sections)
+        column, rear = np.array(list(columns.values()), np.int64), np.array([sections[key] for key in columns])
+        front = self._edge.front[column]
+        row, offset = self._rows(column, front, motion(front * self._sheet.grid.ny + column)[0][:, 0], rear)
+        nodes = row * self._sheet.grid.ny + np.repeat(column, np.diff(offset))
+        position, velocity = motion(nodes)
+        self._check_apart(position, offset)
+        x, z, ends = position[:, 0].copy(), position[:, 2].copy(), offset.tolist()
+        foremost = (x[offset[:-1]] + self._edge.lead(front)).tolist()
+        return {
+            key: SheetEdge(x[a:b], z[a:b], foremost[k], velocity[a:b], nodes[a:b])
+            for k, (key, a, b) in enumerate(zip(columns, ends, ends[1:], strict=False))
+        }
 
     def compliance(self, sections: Sequence[int]) -> Array:
         """As `SheetParticipant.compliance`."""
@@ -38,42 +50,33 @@ class Underside:
 
     def _in_front(self, sections: Iterable[int]) -> dict[int, int]:
         """The column that stands for each section: the rearmost, so that no ice beside a new plate overlaps it."""
-        columns = {}
-        for key in sections:
-            first = key * self._columns
-            if 0 <= first < self._sheet.grid.ny:
-                front = self._edge.front[first : first + self._columns]
-                if front.min() >= 0:
-                    columns[key] = first + int(np.argmin(front))
-        return columns
+        ny, across = self._sheet.grid.ny, self._columns
+        front = np.full(-(-ny // across) * across, self._sheet.grid.nx)
+        front[:ny] = self._edge.front
+        of_section = front.reshape(-1, across)
+        rearmost, ice = of_section.argmin(axis=1).tolist(), (of_section.min(axis=1) >= 0).tolist()
+        return {k: k * across + rearmost[k] for k in sections if 0 <= k < len(ice) and ice[k]}
 
-    def _reach(self, front: float, rear: float) -> float:
-        """Length of sheet behind its front that rubble meets which reaches back to ``rear`` [m]."""
-        step = REACH * self._sheet.ice.h
-        return step * max(1.0, float(np.ceil((front - rear + self._sheet.ice.h) / step)))
+    def _rows(self, column: IntArray, front: IntArray, foremost: Array, rear: Array) -> tuple[IntArray, IntArray]:
+        """Rows of columns, from the ``front`` at ``foremost`` [m] to ``rear`` [m] or the first gap; where each begins.
 
-    def _section(self, column: int, motion: NodeMotion, rear: float) -> SheetEdge:
-        g, front = self._sheet.grid, int(self._edge.front[column])
-        foremost = float(motion(np.array([front * g.ny + column]))[0][0, 0])
-        rows = np.arange(front, max(front - int(min(self._reach(foremost, rear) / g.d, g.nx)) - 1, -1), -1)
-        present = self._sheet.present[rows * g.ny + column]
-        rows = rows[: int(np.argmin(present))] if not present.all() else rows
-        nodes = rows * g.ny + column
-        position, velocity = motion(nodes)
-        self._check_apart(position)
-        return SheetEdge(
-            x=position[:, 0],
-            z=position[:, 2],
-            front=float(position[0, 0]) + float(self._edge.lead(rows[:1])[0]),
-            velocity=velocity,
-            nodes=nodes,
-        )
+        As many sheets as `REACH` says.
+        """
+        g, step = self._sheet.grid, REACH * self._sheet.ice.h
+        reach = step * np.maximum(1.0, np.ceil((foremost - rear + self._sheet.ice.h) / step))
+        count = np.minimum((np.minimum(reach / g.d, g.nx)).astype(np.int64), front) + 1
+        back = np.arange(count.max(initial=0))
+        row = front[:, None] - back
+        there = (back < count[:, None]) & self._sheet.present[np.maximum(row, 0) * g.ny + column[:, None]]
+        on = np.logical_and.accumulate(there, axis=1)
+        return row[on], np.concatenate(([0], np.cumsum(on.sum(axis=1))))
 
-    def _check_apart(self, position: Array) -> None:
+    def _check_apart(self, position: Array, offset: IntArray) -> None:
         """Refuses rows (m, 3), front first, of which one has passed the next."""
-        passed = np.flatnonzero(np.diff(position[:, 0]) >= 0.0)
-        if len(passed):
-            x, y = position[passed[0], :2]
+        behind = np.diff(position[:, 0]) < 0.0
+        behind[offset[1:-1] - 1] = True  # from one section to the next
+        if not behind.all():
+            x, y = position[int(np.argmin(behind)), :2]
             raise SimulationError(
                 f"t = {self._motion.t:.3f} s: parts of the floe overlap by a cell at x = {x:.2f}, "
                 f"y = {y:.2f} m, because cracks carry no pressure between parts that stay in the "

@@ -36,7 +36,7 @@ Y, V, F, OLD, NEW, PULL, GAINED, SAYS, CELL = (LANES * line for line in (0, 20, 
 LOOK = CELL + BLOCK  #: length of the room
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def fetch_cells(first: int, linear: Array, room: Array) -> None:
     """The lines of the cells from ``first`` on into the room."""
     lines = linear[first * (BLOCK // LANES) :]
@@ -44,7 +44,7 @@ def fetch_cells(first: int, linear: Array, room: Array) -> None:
         room[CELL + n] = lines[n]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def fetch(line: int, corner: IntArray, my: int, y: Array, room: Array) -> None:
     """Values y (5, nodes) of the nodes of up to `LANES` cells into the room, from ``line`` on."""
     for lane in range(len(corner)):
@@ -54,7 +54,14 @@ def fetch(line: int, corner: IntArray, my: int, y: Array, room: Array) -> None:
             room[at + (4 * c + 2) * L], room[at + (4 * c + 3) * L] = y[c, b + 1], y[c, b + my + 1]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
+def halve(room: Array) -> None:
+    """Values at Y become the means of those at V and Y."""
+    for n in range(20 * LANES):
+        room[Y + n] = 0.5 * (room[V + n] + room[Y + n])
+
+
+@compiled(nogil=True, borrows=True)
 def fetch_lean(corner: IntArray, strain: Array, room: Array) -> None:
     """Strains (3, nodes) from slopes of up to `LANES` cells, those before and, until they are known, those now."""
     for lane in range(len(corner)):
@@ -63,7 +70,7 @@ def fetch_lean(corner: IntArray, strain: Array, room: Array) -> None:
             room[OLD + i * L + lane] = room[NEW + i * L + lane] = strain[i, b]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def put_lean(corner: IntArray, room: Array, strain: Array, pull: Array) -> float:
     """Slopes of up to `LANES` cells to their places; the energy that these have given, over d^2 [J/m2]."""
     gained = 0.0
@@ -77,7 +84,7 @@ def put_lean(corner: IntArray, room: Array, strain: Array, pull: Array) -> float
     return gained
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def add_forces(corner: IntArray, my: int, room: Array, force: Array) -> None:
     """Adds the forces of up to `LANES` cells to those on the nodes, (5, nodes)."""
     for lane in range(len(corner)):
@@ -125,7 +132,7 @@ def pose_in(at: int, d: float, room: Array) -> Pose:
     return Pose(strain, elongations_in(at, 0.5 * d, room))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def lean_block(q: float, alpha: float, ago: float, room: Array) -> None:
     """New slopes at y - alpha v and what they do; the energy is that of ``ago`` [s], as in `lean.lean_row`."""
     for i in range(LANES):
@@ -150,7 +157,7 @@ def lean_block(q: float, alpha: float, ago: float, room: Array) -> None:
         room[PULL + i], room[PULL + L + i] = N_x * s_x + N_s * s_y, N_s * s_x + N_y * s_y
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def moved(q: float, room: Array) -> int:
     """How many cells' faces have been strained so far since the last evaluation that the law must be asked anew.
 
@@ -172,7 +179,7 @@ def moved(q: float, room: Array) -> int:
     return count
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def force_block(d: float, room: Array) -> None:
     """Forces of the cells on their nodes at Y and the strains NEW from slopes."""
     q, f = 0.5 / d, 0.5 * d
@@ -197,7 +204,7 @@ def force_block(d: float, room: Array) -> None:
         room[b + 2 * L], room[b + 3 * L] = f * (-M2 + M3 + ty - Q2), f * (-M2 - M3 - ty - Q3)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def power_block(d: float, room: Array) -> None:
     """What each cell's tangent does at V in the motion Y, over the same units of both: y . K v into the room."""
     q, half = 0.5 / d, 0.5 * d

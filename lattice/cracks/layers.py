@@ -63,7 +63,7 @@ class Answer(NamedTuple):
     limit: float  #: largest shear out of the plane that the cracks bear per width, infinite without cracks [N/m]
 
 
-@compiled(nogil=True, error_model="numpy")
+@compiled(nogil=True, borrows=True, error_model="numpy")
 def follow_all(e: Strain, h: float, law: CrackLaw, stack: Array) -> None:
     """Every layer of a cell at a strain, from its states in ``stack``; these go on, and what it carries comes."""
     for i in range(ROW):
@@ -103,7 +103,7 @@ def grip(damage: int, stress: int, h: float, law: CrackLaw, stack: Array) -> tup
     return push, hold + law.mu * push if worst > 0.0 else math.inf
 
 
-@compiled(nogil=True, error_model="numpy")
+@compiled(nogil=True, borrows=True, error_model="numpy")
 def sums(h: float, law: CrackLaw, stack: Array) -> Answer:
     """The integrals over the thickness of what `follow_all` has left."""
     (Nn, Mn, _), (Nt, Mt, _), (Ng, Mg, _) = moments(S_N, h, stack), moments(S_T, h, stack), moments(TAU, h, stack)

@@ -66,7 +66,7 @@ class Constants(NamedTuple):
     q: float  #: 1 / 2 d [1/m]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def lean_row(i: int, motion: Motion, intact: Array, was: Array, constants: Constants, rows: Array) -> None:
     """New slopes of the elastic cells of row i, into ``rows``, with the strains ``was`` (3, rows, my) before.
 
@@ -94,7 +94,7 @@ def lean_row(i: int, motion: Motion, intact: Array, was: Array, constants: Const
         rows[P_X + j], rows[P_Y + j] = N_x * s_x + N_s * s_y, N_s * s_x + N_y * s_y
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def keep_row(start: int, n: int, rows: Array, strain: Array, stress: Array, pull: Array) -> None:
     """What `lean_row` has found to the n places from ``start`` on."""
     for c in range(3):
@@ -107,7 +107,7 @@ def keep_row(start: int, n: int, rows: Array, strain: Array, stress: Array, pull
             pull[c, start + j] = rows[P_X + c * LINE + j]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> float:
     """New slopes of elastic cells, ``intact`` (places,) as `Intact.plane`; the energy gained, over d^2 [J/m2]."""
     my, lean, rows, gained = nodes.my, layered.lean, layered.nodes.rows, 0.0
@@ -124,7 +124,7 @@ def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> float:
     return gained
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def pulls(x: Array, y: Array, my: int, f: float, out: Array) -> None:
     """On each node f times what the four cells around it pull with x on d/dx and with y on d/dy.
 
@@ -141,7 +141,7 @@ def pulls(x: Array, y: Array, my: int, f: float, out: Array) -> None:
         force[n] = f * (along + across)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def gather_lean(my: int, layered: Layered) -> None:
     """Forces of cells that lean on their nodes."""
     lean, f = layered.lean, 0.5 * layered.plate.d
@@ -150,7 +150,7 @@ def gather_lean(my: int, layered: Layered) -> None:
     pulls(lean.pull[0], lean.pull[1], my, f, lean.force[W])
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def look_at_cells(nodes: Nodes, intact: Array, layered: Layered) -> None:
     """New slopes of all cells, the law where layered ones have moved, and all that these do to the nodes."""
     force, lean, gained = layered.nodes.force, layered.lean.force, 0.0
@@ -166,13 +166,13 @@ def look_at_cells(nodes: Nodes, intact: Array, layered: Layered) -> None:
     layered.cells.losses[TURNING] -= layered.plate.d**2 * gained
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def book_pull(time: float, v: Array, layered: Layered) -> None:
     """Books the work of N . s on the deflection at velocities v (5, places) for a time [s]."""
     layered.cells.losses[TURNING] -= time * dot(layered.lean.force[W], v[W])
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def overloaded_leaning(motion: Motion, threshold: Array, screen: Screen, alpha: float, layered: Layered) -> int:
     """As `screen.overloaded`, with the strains of slopes."""
     count, d2 = 0, 2.0 * layered.plate.d

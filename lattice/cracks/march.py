@@ -33,16 +33,16 @@ def march_cracked(
     layered: Layered,
 ) -> Made:
     """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
-    pace, room, contact_work, loss = mesh.pace, mesh.scratch, 0.0, 0.0
+    pace, contact_work, loss = mesh.pace, 0.0, 0.0
     hold, my = 0.0, motion.y.shape[2]
-    before, mean, force = room.before.reshape(5, -1), room.mean.reshape(5, -1), layered.nodes.force
+    before, force = mesh.before.reshape(5, -1), layered.nodes.force
     nodes = Nodes(motion.y.reshape(5, -1), motion.v.reshape(5, -1), my, pace.alpha, pace.go - pace.alpha)
     for step in range(stretch.steps):
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
         look_at_cells(nodes, mesh.intact.plane.reshape(-1), layered)
         if step % stretch.stride == 0:
-            room.before[:] = motion.v
+            mesh.before[:] = motion.v
         hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
         hold += pull_on_held(mesh.held.reshape(-1), force)
         contact_work += half_power(load, touch, sums, motion.v)
@@ -54,7 +54,7 @@ def march_cracked(
         contact_work += half_power(load, touch, sums, motion.v)
         book_pull(0.5 * nodes.dt, nodes.v, layered)
         if step % stretch.stride == 0:
-            loss += dissipated(motion, mesh) + nodes.dt * pace.alpha * damping_power(my, before, mean, layered)
+            loss += dissipated(motion, mesh) + nodes.dt * pace.alpha * damping_power(my, before, nodes.v, layered)
         count = overloaded_leaning(motion, mesh.threshold, screen, pace.alpha, layered)
         if count > 0:
             return Made(step + 1, count, contact_work, loss, hold)

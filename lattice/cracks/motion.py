@@ -16,6 +16,7 @@ from lattice.cracks.blocks import (
     fetch_cells,
     fetch_lean,
     force_block,
+    halve,
     lean_block,
     moved,
     pose_in,
@@ -92,7 +93,7 @@ def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
     return stored
 
 
-@compiled(nogil=True, error_model="numpy")
+@compiled(nogil=True, borrows=True, error_model="numpy")
 def ask_moved(first: int, end: int, times: tuple[float, float], layered: Layered) -> None:
     """Evaluates the law in those cells of a block that `moved` has found."""
     room, d = layered.nodes.room, layered.plate.d
@@ -103,7 +104,7 @@ def ask_moved(first: int, end: int, times: tuple[float, float], layered: Layered
     fetch_cells(first, layered.cells.linear, room)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def look_at_layered(nodes: Nodes, layered: Layered) -> float:
     """New slopes of layered cells, their law where their strain has moved, and their forces, added on the nodes.
 
@@ -144,23 +145,24 @@ def crack_forces(my: int, y: Array, layered: Layered) -> None:
         add_forces(corner, my, on.room, on.force)
 
 
-@compiled(nogil=True)
-def damping_power(my: int, v: Array, mean: Array, layered: Layered) -> float:
-    """Sum of v . K ``mean`` over layered cells with their tangents K, for two motions of the nodes (5, nodes)."""
+@compiled(nogil=True, borrows=True)
+def damping_power(my: int, v: Array, z: Array, layered: Layered) -> float:
+    """Sum of v . K (v + z) / 2 over layered cells with their tangents K, for two motions of the nodes (5, nodes)."""
     cracks, room, power = layered.cells, layered.nodes.room, 0.0
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, room)
-        fetch(Y, corner, my, mean, room)
+        fetch(Y, corner, my, z, room)
         fetch(V, corner, my, v, room)
+        halve(room)
         power_block(layered.plate.d, room)
         for lane in range(end - first):
             power += room[SAYS + lane]
     return power
 
 
-@compiled(nogil=True, fastmath={"reassoc"})
+@compiled(nogil=True, borrows=True, fastmath={"reassoc"})
 def dot(x: Array, y: Array) -> float:
     """Sum of products in the order in which vectors have them: the same bits in every run."""
     total = 0.0
@@ -169,7 +171,7 @@ def dot(x: Array, y: Array) -> float:
     return total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
     """Adds forces (5, places) on all nodes to a sub-step that has been made."""
     y, v, f = motion.y, motion.v, force.reshape(motion.y.shape)
@@ -183,7 +185,7 @@ def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
                 y[c, i, j] += go * dv
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def pull_on_held(held: Array, force: Array) -> float:
     """Force along x that nodes with ``held`` (places,) 1 need against the forces (5, places) [N]."""
     total: float = dot(held, force[U_X])

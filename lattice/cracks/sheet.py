@@ -45,6 +45,7 @@ class CrackingSheet(ExplicitSheet):
     ):
         """As `ExplicitSheet`; the strengths of the ice are those of its layers."""
         super().__init__(engine, share=share, contact_time=contact_time, criteria=criteria)
+        self._hinges: tuple[bytes, Hinges] | None = None  #: what they were found of, and they
 
     def _check_rest(self) -> None:
         """Cells that are overloaded at rest begin to crack in the first window."""
@@ -92,7 +93,7 @@ class CrackingSheet(ExplicitSheet):
         return replace(self.standing, lean=self.engine.lean_strain())
 
     def _ease(self) -> None:
-        self._set_cells()
+        """The limit is that of the layers: no cell carries more."""
 
     def _begin_cracked(self, cells: IntArray, angle: Array) -> None:
         for cell, normal in zip(cells.tolist(), angle.tolist(), strict=True):
@@ -119,12 +120,16 @@ class CrackingSheet(ExplicitSheet):
     def hinges(self) -> Hinges:
         """What cracks that have passed the middle of the ice divide, at the end of the last window."""
         layered = self.engine.layered
-        deep = layered.depth >= DEEP
-        if not deep.any():
+        deep = layered.cell[layered.depth >= DEEP]
+        if not len(deep):
             return no_hinges(self.grid.nodes)
-        whole = self.joins & self.present[self.grid.cell_nodes].all(axis=1)
-        whole[layered.cell[deep]] = False
-        return hinges(self.grid, whole, layered.cell[deep], self.present, self.held, self.share)
+        whole = self.joins
+        key = whole.tobytes() + deep.tobytes() + self.present.tobytes()
+        if self._hinges is None or self._hinges[0] != key:
+            whole &= self.present[self.grid.cell_nodes].all(axis=1)
+            whole[deep] = False
+            self._hinges = key, hinges(self.grid, whole, deep, self.present, self.held, self.share)
+        return self._hinges[1]
 
     def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
         """As `Floe.depart`; a layered cell goes with the first of its nodes, and is booked once."""
@@ -138,12 +143,7 @@ class CrackingSheet(ExplicitSheet):
     def _parted(self) -> BoolArray:
         """Layered cells whose crack is through, pressed by nothing, and open or slipped by h/2, (count,)."""
         layered = self.engine.layered
-        if not layered.count:
-            return np.zeros(0, bool)
-        through, opening, slip = layered.parting(self.grid.d)
-        h = self.ice.h * self.engine.varied.thickness[layered.cell][:, None]
-        loose = through & (layered.thrust <= 0.0) & (np.maximum(opening, slip) > 0.5 * h)
-        return np.asarray((loose | (slip > h)).any(axis=1))
+        return layered.parted(self.grid.d, self.ice.h * self.engine.varied.thickness[layered.cell])
 
     def let_go(self, t: float, contact: EdgeContact, out: Outcome, release: Release) -> None:
         """At the start of a window: pieces that nothing presses any more, and those that have turned too far."""

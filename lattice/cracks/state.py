@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lattice.cracks.cells import BLOCK, LOSSES, SEEN, Cracks, Plate, room_for
+from lattice.cracks.cells import BLOCK, LOSSES, Cracks, Plate, room_for
 from lattice.cracks.law import CrackLaw, Local, N
 from lattice.cracks.layers import WEIGHTS
 from lattice.cracks.motion import Layered
+from lattice.cracks.parting import parted
 from lattice.cracks.slopes import Lean, level, on_nodes
 from lattice.explicit.layout import LANES, copied
 from lattice.grid import Array, BoolArray, IntArray
@@ -113,18 +114,10 @@ class LayeredCells:
         thrust: Array = self._cracks.thrust[: self.count]
         return thrust
 
-    def parting(self, d: float) -> tuple[BoolArray, Array, Array]:
-        """Across n and t, (count, 2) each: cracked through; opening of the middle and slip [m] of cells of size d."""
-        c, n = self._cracks, self.count
-        through = np.asarray((c.damage[:n] >= 1.0).all(axis=1))
-        cos, sin = c.axis[:, :n]
-        lines = self._lines()
-        e11, e22, g12 = (lines[:, SEEN // LANES + i].reshape(-1)[:n] for i in range(3))
-        opening = np.stack(
-            (cos**2 * e11 + sin**2 * e22 + cos * sin * g12, sin**2 * e11 + cos**2 * e22 - cos * sin * g12), axis=1
-        )
-        slip = np.maximum(d * np.abs(c.slip[:n]).max(axis=1), np.abs(c.shear_slip[:n]).max(axis=1))
-        return through, d * opening, np.stack((slip, slip), axis=1)
+    def parted(self, d: float, thickness: Array) -> BoolArray:
+        """Which have come apart, (count,): see `parting.parted`."""
+        found: BoolArray = parted(self.count, d, thickness, self._cracks)
+        return found
 
     @property
     def losses(self) -> dict[str, float]:

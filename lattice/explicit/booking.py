@@ -11,7 +11,6 @@ import numpy as np
 
 from lattice.explicit.engine import ExplicitEngine, Marched
 from lattice.explicit.forces import PointForces, Touch
-from lattice.explicit.layout import U_X
 from lattice.explicit.window import Window
 from lattice.floe import Floe
 from lattice.grid import BoolArray, IntArray
@@ -24,8 +23,7 @@ class BookedFloe(Floe):
 
     def _hold(self, w: Window, time: float, hold: float) -> None:
         """Books forces of held nodes along x [N] for a time [s]; what loads and contact bring to these is not held."""
-        on_held = self.support.held[w.load.row * self.grid.ny + w.load.column]
-        impulse = time * (hold - float(w.load.force[on_held, U_X].sum()))
+        impulse = time * (hold - w.at_held)
         self.energy.hold += impulse
         w.hold += impulse
 
@@ -36,10 +34,11 @@ class BookedFloe(Floe):
         books.touch.work += out.contact_work
         books.touch.push += time * float(out.contact[:, 0].sum())
         books.rub.add(time, books.friction_of(after, out.contact), (after - touch.at) / time)
-        for (name, of), work in zip(w.by_name(), out.work.tolist(), strict=True):
-            book = books.load(name)
+        for load, work, push in zip(w.loads, out.work.tolist(), w.sums[:, 0].tolist(), strict=True):
+            book = books.load(load.name)
             book.work += work
-            book.push += time * float(w.load.force[of, U_X].sum())
+            book.push += time * push
+        w.push += time * w.sums
         books.damping += out.loss
 
     def _book_half(self, part: float, w: Window, touch: Touch) -> None:

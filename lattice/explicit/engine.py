@@ -14,15 +14,16 @@ import numpy as np
 import scipy.sparse as sp
 
 from lattice.assembly import assemble
-from lattice.contact import EdgeContact, lever_of, point_displacement
+from lattice.contact import EdgeContact, lever_of
 from lattice.criteria.laws import combined_tension
 from lattice.explicit import layout
 from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
 from lattice.explicit.kernels import pull_of_springs, push, sweep, unpack
 from lattice.explicit.layout import Motion, PerNode
 from lattice.explicit.march import march
+from lattice.explicit.readings import add_path, deflections, points
 from lattice.explicit.screen import Judge, screen_of, thresholds
-from lattice.grid import Array, BoolArray, Grid, IntArray
+from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.implicit.engine import Engine
 from lattice.state import State
@@ -210,6 +211,14 @@ class ExplicitEngine(Engine):
         unpack(motion, ago, self.grid.ny, u, q)
         return u, q
 
+    def deflections(self, q: Array) -> None:
+        """Writes w, phi_x and phi_y of all nodes now into q (n, 3)."""
+        deflections(self.motion, self.alpha, self.grid.ny, q)
+
+    def add_path(self, time: float, before: Array, path: Array) -> None:
+        """Adds what they do in a ``time`` [s] to their integral, by the trapezoidal rule; both (n, 3)."""
+        add_path(self.motion, self.alpha, self.grid.ny, 0.5 * time, before, path)
+
     # ---- forces ------------------------------------------------------------------------------------------------
 
     def touch(self, t: float, contact: EdgeContact) -> Touch:
@@ -218,14 +227,8 @@ class ExplicitEngine(Engine):
 
     def touching(self, contact: EdgeContact) -> Array:
         """Displacements of the points of action now, (m, 3) [m]."""
-        u, q = np.split(self.at(contact.nodes), [2], axis=1)
-        return point_displacement(u, q, np.arange(len(u)), lever_of(contact))
-
-    def at(self, nodes: IntArray) -> Array:
-        """Displacements of some nodes now, (k, 5)."""
-        row, column = np.divmod(nodes, self.grid.ny)
-        y, v = self.motion
-        return (y[:, row, column] - self.alpha * v[:, row, column]).T
+        lever = map(np.ascontiguousarray, lever_of(contact))
+        return np.asarray(points(contact.nodes, self.grid.ny, *lever, self.motion, self.alpha))
 
     def march(self, steps: int, load: PointForces, touch: Touch, lively: bool) -> Marched:
         """Up to ``steps`` sub-steps, to the first failure; damping is taken stock of in each or in the first only."""
@@ -239,8 +242,7 @@ class ExplicitEngine(Engine):
 
     def hold(self) -> float:
         """Force along x that held nodes take from all cells now [N]."""
-        mesh = self.mesh
-        return float(pull_of_springs(self.motion, mesh.intact, mesh.held, mesh.springs))
+        return float(pull_of_springs(self.motion, self.mesh.intact, self.mesh.held, self.mesh.springs))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop. A lattice whose cells carry more than springs runs its own here."""

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lattice.compiled import compiled
 from lattice.contact import EdgeContact
 from lattice.explicit.layout import W
 from lattice.grid import Array, IntArray
@@ -70,18 +71,28 @@ def indenter(nodes: IntArray, columns: int, stiffness: Array | float) -> Touch:
 
 def point_forces(loads: Loads, columns: int) -> PointForces:
     """Those forces of loads that are not zero; ``columns`` nodes across."""
-    parts = []
-    for load in loads:
-        some = np.zeros(len(load.force_u), bool)
-        for force in (load.force_u, load.force_q):
-            some[np.flatnonzero(force) // force.shape[1]] = True
-        nodes = np.flatnonzero(some)
-        parts.append((nodes, np.hstack((load.force_u[nodes], load.force_q[nodes]))))
-    if not parts:
+    if not loads:
         return NOTHING
+    parts = [_pressed(np.ascontiguousarray(n.force_u), np.ascontiguousarray(n.force_q)) for n in loads]
     nodes, force = (np.concatenate(p) for p in zip(*parts, strict=True))
-    first = np.concatenate(([0], np.cumsum([len(n) for n, _ in parts])))
-    return PointForces(*np.divmod(nodes, columns), np.ascontiguousarray(force), first)
+    return PointForces(*np.divmod(nodes, columns), force, np.cumsum([0, *(len(n) for n, _ in parts)]))
+
+
+@compiled(nogil=True)
+def _pressed(force_u: Array, force_q: Array) -> tuple[IntArray, Array]:
+    """Nodes on which some force is not zero, (k,), and what acts on them, (k, 5)."""
+    nodes, count = np.empty(force_u.shape[0], np.int64), 0
+    for n in range(force_u.shape[0]):
+        some = force_q[n, 2] != 0.0
+        for c in range(2):
+            some = some or force_u[n, c] != 0.0 or force_q[n, c] != 0.0
+        if some:
+            nodes[count] = n
+            count += 1
+    force = np.empty((count, 5))
+    for k in range(count):
+        force[k, :2], force[k, 2:] = force_u[nodes[k]], force_q[nodes[k]]
+    return nodes[:count].copy(), force
 
 
 def touch_at(t: float, contact: EdgeContact, at: Array, columns: int) -> Touch:

@@ -29,25 +29,35 @@ from lattice.explicit.layout import (
     Motion,
     Pace,
     PerNode,
-    Scratch,
     W,
 )
 from lattice.grid import Array, IntArray
 
 NX, SX, QX, BX, TX, NY, SY, QY, BY, TY, D1, D2, G1, G2, C0, C1, C2, C3, C4 = (k * LINE + LANES for k in range(LINES))
 CARRIED = 14 * LINE  #: where the sums begin in ``rows`` that a row leaves for the next one
+Five = tuple[float, float, float, float, float]  #: a value of each degree of freedom, or of each spring along an axis
 
 
 @compiled(inline="always")
-def stretches(i: int, j: int, y: Array, half: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+def at_node(i: int, j: int, y: Array) -> Five:
+    """Of one node."""
+    return y[U_X, i, j], y[U_Y, i, j], y[W, i, j], y[PHI_X, i, j], y[PHI_Y, i, j]
+
+
+@compiled(inline="always")
+def halfway(i: int, j: int, y: Array, z: Array) -> Five:
+    """Mean of two motions of one node."""
+    (a, b, c, d, e), (f, g, h, k, m) = at_node(i, j, y), at_node(i, j, z)
+    return 0.5 * (a + f), 0.5 * (b + g), 0.5 * (c + h), 0.5 * (d + k), 0.5 * (e + m)
+
+
+@compiled(inline="always")
+def stretches(a: Five, b: Five, c: Five, e: Five, half: float) -> tuple[Five, Five, tuple[float, float, float, float]]:
     """Elongations of the connections from node (i, j) along x, along y, and along both diagonals of its cell.
 
-    Along an axis: (2.2) to (2.5) lengthwise, sideways, across, in bending and in torsion.
+    From its four nodes. Along an axis: (2.2) to (2.5) lengthwise, sideways, across, in bending and in torsion.
     """
-    a0, a1, a2, a3, a4 = y[U_X, i, j], y[U_Y, i, j], y[W, i, j], y[PHI_X, i, j], y[PHI_Y, i, j]
-    b0, b1, b2, b3, b4 = y[U_X, i + 1, j], y[U_Y, i + 1, j], y[W, i + 1, j], y[PHI_X, i + 1, j], y[PHI_Y, i + 1, j]
-    c0, c1, c2, c3, c4 = y[U_X, i, j + 1], y[U_Y, i, j + 1], y[W, i, j + 1], y[PHI_X, i, j + 1], y[PHI_Y, i, j + 1]
-    e0, e1, e3, e4 = y[U_X, i + 1, j + 1], y[U_Y, i + 1, j + 1], y[PHI_X, i + 1, j + 1], y[PHI_Y, i + 1, j + 1]
+    (a0, a1, a2, a3, a4), (b0, b1, b2, b3, b4), (c0, c1, c2, c3, c4), (e0, e1, _, e3, e4) = a, b, c, e
     return (
         (b0 - a0, b1 - a1, b2 - a2 + half * (a3 + b3), b3 - a3, b4 - a4),
         (c1 - a1, c0 - a0, c2 - a2 + half * (a4 + c4), c4 - a4, c3 - a3),
@@ -64,14 +74,15 @@ def weights(i: int, j: int, intact: Intact) -> tuple[tuple[float, float], tuple[
     return along, across, (cell, bent)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def connections(i: int, ny: int, y: Array, intact: Intact, springs: HalfSprings, rows: Array) -> None:
     """Forces of the connections from row i along x, along y and along both diagonals, (2.2)-(2.5) and chapter 3."""
     kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
     kd, gd, half = springs.K_n_dia, springs.G_dia, springs.lever
     for j in range(ny):
         (x, bx), (z, bz), (cell, bent) = weights(i, j, intact)
-        u, v, c = stretches(i, j, y, half)
+        a, b = at_node(i, j, y), at_node(i + 1, j, y)
+        u, v, c = stretches(a, b, at_node(i, j + 1, y), at_node(i + 1, j + 1, y), half)
         rows[NX + j] = kn * x * u[0]
         rows[SX + j] = ks * x * u[1]
         rows[QX + j] = ko * x * u[2]
@@ -88,17 +99,20 @@ def connections(i: int, ny: int, y: Array, intact: Intact, springs: HalfSprings,
         rows[G2 + j] = gd * bent * c[3]
 
 
-@compiled(nogil=True)
-def power_of_springs(two: Scratch, intact: Intact, springs: HalfSprings, rows: Array, ny: int) -> float:
-    """Sum of a . K b over the springs, for two motions a and b of the nodes."""
+@compiled(nogil=True, borrows=True)
+def power_of_springs(one: Array, two: Array, intact: Intact, springs: HalfSprings, rows: Array, ny: int) -> float:
+    """Sum of one . K (one + two) / 2 over the springs, for two motions of the nodes."""
     kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
     kd, gd, half, total = springs.K_n_dia, springs.G_dia, springs.lever, 0.0
-    (before, mean), nx = two, intact.plane.shape[0] - 1
+    nx = intact.plane.shape[0] - 1
     rows[NX : NX + ny] = 0.0
     for i in range(nx):
         for j in range(ny):
             (x, bx), (z, bz), (cell, bent) = weights(i, j, intact)
-            (a, b, c), (u, v, w) = stretches(i, j, before, half), stretches(i, j, mean, half)
+            n0, n1, n2 = at_node(i, j, one), at_node(i + 1, j, one), at_node(i, j + 1, one)
+            m0, m1, m2 = halfway(i, j, one, two), halfway(i + 1, j, one, two), halfway(i, j + 1, one, two)
+            a, b, c = stretches(n0, n1, n2, at_node(i + 1, j + 1, one), half)
+            u, v, w = stretches(m0, m1, m2, halfway(i + 1, j + 1, one, two), half)
             power = kn * (x * a[0] * u[0] + z * b[0] * v[0]) + ks * (x * a[1] * u[1] + z * b[1] * v[1])
             power += ko * (x * a[2] * u[2] + z * b[2] * v[2]) + gr * (bx * a[3] * u[3] + bz * b[3] * v[3])
             power += gt * (bx * a[4] * u[4] + bz * b[4] * v[4])
@@ -109,7 +123,7 @@ def power_of_springs(two: Scratch, intact: Intact, springs: HalfSprings, rows: A
     return total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def gather(i: int, ny: int, motion: Motion, kick: PerNode, lever: float, pace: Pace, rows: Array) -> None:
     """Every node of row i sums its connections and moves; what row i + 1 gets from them is left in C0 to C4."""
     y, v, half = motion.y, motion.v, lever
@@ -148,7 +162,7 @@ def gather(i: int, ny: int, motion: Motion, kick: PerNode, lever: float, pace: P
         y[PHI_Y, i, j] += go * v[PHI_Y, i, j] - alpha * old
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def pull_of_springs(motion: Motion, intact: Intact, held: Array, springs: HalfSprings) -> float:
     """Force along x that nodes with ``held`` (n_x+1, m_y) 1 need against the springs [N]; else it is 0."""
     y, kn, ks, kd, total = motion.y, springs.K_n, springs.K_s, springs.K_n_dia, 0.0
@@ -168,7 +182,7 @@ def pull_of_springs(motion: Motion, intact: Intact, held: Array, springs: HalfSp
     return total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def sweep(motion: Motion, intact: Intact, kick: PerNode, springs: HalfSprings, pace: Pace, rows: Array) -> None:
     """One step of all nodes without external forces, in place."""
     nx, ny = kick.u.shape
@@ -178,7 +192,7 @@ def sweep(motion: Motion, intact: Intact, kick: PerNode, springs: HalfSprings, p
         gather(i, ny, motion, kick, springs.lever, pace, rows)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def push(row: IntArray, column: IntArray, force: Array, motion: Motion, kick: PerNode, go: float) -> None:
     """Adds forces (k, 5) on single nodes to the step that `sweep` has just made; go = dt + alpha."""
     for k in range(len(row)):

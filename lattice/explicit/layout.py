@@ -60,13 +60,6 @@ class Pace(NamedTuple):
     drag: float  #: dt (c - alpha k_f) / (rho h) [-]
 
 
-class Scratch(NamedTuple):
-    """Velocities in a sub-step whose damping is taken stock of, each (5, n_x+1, m_y)."""
-
-    before: Array
-    mean: Array  #: of those before and after
-
-
 class Intact(NamedTuple):
     """What cells give to their springs, over uniform ice: 1 where ice is as the mean, 0 where there is no cell.
 
@@ -84,11 +77,11 @@ class Mesh(NamedTuple):
     threshold: Array  #: (n_x, n_y) of `screen.overloaded` for cell (i, j), infinite where there is none
     held: Array  #: (n_x+1, m_y) 1 at nodes that are held along x, else 0
     kick: PerNode  #: dt / mass; zero where held [s/kg], [s/(kg m2)]
-    mass: PerNode  #: zero where held [kg], [kg m2]
+    mass: Array  #: (n_x, n_y) of the deflection, zero where there is no node [kg]
     springs: HalfSprings
     pace: Pace
     rows: Array  #: (LINES * LINE,) what one pass over a row leaves for the other
-    scratch: Scratch
+    before: Array  #: (5, n_x+1, m_y) velocities before a sub-step whose damping is taken stock of [m/s], [rad/s]
 
 
 def aligned(*shape: int) -> Array:
@@ -118,24 +111,25 @@ def mesh(grid: Grid, held: BoolArray, kick: PerNode, springs: HalfSprings, pace:
     wide, columns = _wide(grid), columns_of(grid)
     if wide > LINE:
         raise ValueError(f"{grid.ny} nodes across are too many for the explicit engine: use at most {LINE - LANES}")
-    room, padded, masses = aligned(2, 5, grid.nx + 1, wide), aligned(3, grid.nx, columns), aligned(3, grid.nx, columns)
+    padded, mass = aligned(3, grid.nx, columns), aligned(grid.nx, columns)
     threshold = aligned(grid.nx, columns)
     threshold[:] = np.inf
     on_x = aligned(grid.nx + 1, wide)
     on_x[: grid.nx, : grid.ny] = held.reshape(grid.nx, grid.ny)
     for k, values in enumerate(kick):
         padded[k, :, : grid.ny] = values.reshape(grid.nx, grid.ny)
-    np.divide(dt, padded, out=masses, where=padded > 0.0)
+    kick = PerNode(*padded)
+    np.divide(dt, kick.w, out=mass, where=kick.w > 0.0)
     return Mesh(
         intact=Intact(aligned(grid.nx + 1, wide), aligned(grid.nx + 1, wide)),
         threshold=threshold,
         held=on_x,
-        kick=PerNode(*padded),
-        mass=PerNode(*masses),
+        kick=kick,
+        mass=mass,
         springs=springs,
         pace=pace,
         rows=aligned(LINES * LINE),
-        scratch=Scratch(*room),
+        before=aligned(5, grid.nx + 1, wide),
     )
 
 

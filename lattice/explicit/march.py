@@ -35,32 +35,25 @@ def contact_force(touch: Touch, now: Array, motion: Motion, alpha: float) -> Non
             now[k, PHI_X] -= touch.lead[k] * now[k, W]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def dissipated(motion: Motion, mesh: Mesh) -> float:
     """Work that damping of springs and water took in a sub-step [J], exact for leapfrog.
 
-    It acts on the velocities ``before`` and takes its force times the mean velocity, which is left in the scratch. The
-    mean is none where nodes are held.
+    It acts on the velocities ``before`` and takes its force times the mean velocity.
     """
-    mass, pace, (before, mean) = mesh.mass, mesh.pace, mesh.scratch
-    nx, ny = mass.u.shape
+    mass, pace, before, v = mesh.mass, mesh.pace, mesh.before, motion.v
+    nx, ny = mass.shape
     drag, taken = pace.drag + pace.alpha * pace.buoy, 0.0  # dt c / (rho h)
-    for c in range(5):
-        part = mass.u if c < W else mass.w if c == W else mass.phi
-        for i in range(nx):
-            for j in range(ny):
-                free = 0.5 if part[i, j] > 0.0 else 0.0
-                mean[c, i, j] = free * (before[c, i, j] + motion.v[c, i, j])
     for i in range(nx):
         row = 0.0
         for j in range(ny):
-            row += mass.w[i, j] * before[W, i, j] * mean[W, i, j]
+            row += mass[i, j] * before[W, i, j] * (0.5 * (before[W, i, j] + v[W, i, j]))
         taken += row
-    springs: float = power_of_springs(mesh.scratch, mesh.intact, mesh.springs, mesh.rows, ny)
+    springs: float = power_of_springs(before, v, mesh.intact, mesh.springs, mesh.rows, ny)
     return drag * taken + (pace.go - pace.alpha) * pace.alpha * springs
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def power(row: IntArray, column: IntArray, force: Array, v: Array, first: int, end: int) -> float:
     """Of the forces ``first`` to ``end`` of (k, 5) on single nodes [W]."""
     total = 0.0
@@ -70,7 +63,7 @@ def power(row: IntArray, column: IntArray, force: Array, v: Array, first: int, e
     return total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def half_power(load: PointForces, touch: Touch, sums: Sums, v: Array) -> float:
     """Half the power of the contact [W]; that of each load is added to its sum."""
     for n in range(len(sums.work)):
@@ -93,7 +86,7 @@ def march(
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
         if step % stride == 0:
-            mesh.scratch.before[:] = motion.v
+            mesh.before[:] = motion.v
         contact_work += half_power(load, touch, sums, motion.v)
         hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)

@@ -29,31 +29,36 @@ class Window:
     impulse: Array  #: (n, 3) of the contact [N s]
     q: Array  #: (n, 3) of the deflection and rotation [m s], [rad s]
     push: Array  #: (loads, 2) impulse of each load along x and z [N s]
+    held: BoolArray  #: (n,) nodes that are held along x
+    before: Array  #: (n, 3) deflection and rotation when the present sub-steps began [m], [rad]
     hold: float = 0.0  #: impulse along x of the held nodes on the sheet, less what loads bring to them at once [N s]
 
+    def __post_init__(self) -> None:
+        self._sum_up()
+
     @classmethod
-    def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int) -> Window:
-        """A window that begins with this state; ``columns`` nodes across."""
-        nothing = np.zeros((len(start.q), 3)), np.zeros_like(start.q)
-        load = point_forces(loads, columns)
-        return cls(t, start, loads, load, contact, columns, *nothing, np.zeros((len(loads), 2)))
+    def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int, held: BoolArray) -> Window:
+        """A window that begins with this state; ``columns`` nodes across, of which those ``held`` (n,) stand still."""
+        impulse, q, before = (np.zeros((len(start.q), 3)) for _ in range(3))
+        load, push = point_forces(loads, columns), np.zeros((len(loads), 2))
+        return cls(t, start, loads, load, contact, columns, impulse=impulse, q=q, push=push, held=held, before=before)
 
     def keep(self, present: BoolArray) -> None:
         """Takes the loads off nodes that have left."""
         keep(self.loads, present)
         self.load = point_forces(self.loads, self.columns)
+        self._sum_up()
+
+    def _sum_up(self) -> None:
+        """Sums of each load along x and z, (loads, 2), and of all along x on held nodes [N]."""
+        force, on_held = self.load.force, self.held[self.load.row * self.columns + self.load.column]
+        sums = [(force[of, U_X].sum(), force[of, W].sum()) for _, of in self.by_name()]
+        self.sums, self.at_held = np.array(sums).reshape(-1, 2), float(force[on_held, U_X].sum())
 
     def by_name(self) -> Iterator[tuple[str, slice]]:
         """Each load, and where its forces stand in ``load``."""
         for k, each in enumerate(self.loads):
             yield each.name, slice(self.load.first[k], self.load.first[k + 1])
-
-    def note(self, time: float, before: Array, after: Array) -> None:
-        """Adds some sub-steps that last ``time`` [s], from q ``before`` to q ``after`` by the trapezoidal rule."""
-        load = self.load
-        self.q += 0.5 * time * (before + after)
-        for k, (_, of) in enumerate(self.by_name()):
-            self.push[k] += time * np.array((load.force[of, U_X].sum(), load.force[of, W].sum()))
 
     def mean(self, dt: float) -> State:
         """Mean deflection and rotation over a window of ``dt`` [s]; the rest is that of its start."""

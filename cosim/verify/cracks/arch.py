@@ -123,7 +123,8 @@ def _push(e: CrackingEngine, depth: float, seconds: float) -> Arch:
     for k in range(blocks):
         touch.at[:, W] = -depth * (k + 0.5) / blocks
         made = e.march(block, NOTHING, touch, lively=False)
-        rows.append((-float(e.at(middle)[:, W].mean()), -float(made.contact[:, W].sum()) / width, made.hold / width))
+        w = -float(e.displacement()[1][middle, 0].mean())
+        rows.append((w, -float(made.contact[:, W].sum()) / width, made.hold / width))
     size = max(1, blocks // 100)
     w, force, thrust = np.array(rows)[: blocks // size * size].reshape(-1, size, 3).mean(axis=1).T
     return Arch(w, force, thrust)

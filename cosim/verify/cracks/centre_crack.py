@@ -96,7 +96,7 @@ def pushed(p: dict[str, Any], nodes: int, crack: str) -> Pushed:
             touch.at[:, W] = -p["w"] * (look + (part + 0.5) / blocks) / LOOKS
             total -= float(e.march(e.sub_steps // blocks, NOTHING, touch, lively=False).contact[:, W].sum())
         state = CellState.of(g, *e.displacement(), cells, lean=e.lean_strain()[:, cells])
-        w.append(-float(e.at(tip)[:, W].mean()))
+        w.append(-float(e.displacement()[1][tip, 0].mean()))
         force.append(total / blocks)
         use.append(np.array([[float(CRITERIA[j].judge(state, ice).max()) for ice in ices] for j in JUDGES]))
     return Pushed(np.array(w), np.array(force), np.array(use))

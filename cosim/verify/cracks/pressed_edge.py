@@ -119,7 +119,7 @@ def pressed(p: dict[str, Any], d: float, *, turned: bool = False) -> Pressed:
             if made.failed:
                 first = first if np.isfinite(first) else -float(made.contact[:, W].sum())
                 e.crack(live)
-        w.append(-float(sheet.share[tip] @ e.at(tip)[:, W]))
+        w.append(-float(sheet.share[tip] @ e.displacement()[1][tip, 0]))
         force.append(impulse / done)
     mean = np.convolve(force, np.full(10, 0.1), "valid")  # over half a second
     return Pressed(np.convolve(w, np.full(10, 0.1), "valid"), mean, first, ice.sigma_t)
