@@ -28,6 +28,8 @@ def record(*names: str, integers: tuple[str, ...] = ()) -> np.dtype[np.void]:
 def rows(records: Records, first: str | None = None, count: int | None = None) -> Array:
     """``count`` float64 fields side by side from ``first`` on, as a view (n, count); without them all fields."""
     dtype = records.dtype
+    if first is None and dtype.itemsize == records.strides[0] and len(records):
+        return records.view(np.float64).reshape(len(records), -1)
     names = dtype.names or ()
     start = 0 if first is None else names.index(first)
     width = len(names) if count is None else count

@@ -43,7 +43,7 @@ def bank_room(count: int) -> Banks:
     return Banks(whole, whole.copy(), np.zeros((count, 3)), np.zeros((count, 3)), np.zeros(count))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
     """Adds a row for each plate that overlaps a side of the sheet; returns the number of rows, -1: there is no room.
 
@@ -80,7 +80,7 @@ def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, bef
     return c
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _earlier(p: Record, s: int, e: int) -> bool:
     earlier: bool = p.feature == BANK and (p.slot_b < s or (p.slot_b == s and p.edge < e))
     return earlier

@@ -17,7 +17,7 @@ from rubble.sides import outline_of
 from rubble.slots import BED_SLOT
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
     """Adds a row for each corner of a slice below the bed; returns the number of rows, -1 if there is no room.
 

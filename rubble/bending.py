@@ -44,7 +44,7 @@ class Ice(NamedTuple):
     rho_g: float  #: of the water [N/m3]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def sum_bending(rows: Rows, count: int, plates: Plates, loaded: Loaded) -> None:
     """Adds the impulses of a sub-step's contacts."""
     for c in range(count):
@@ -66,7 +66,7 @@ def sum_bending(rows: Rows, count: int, plates: Plates, loaded: Loaded) -> None:
             _press(plates, point.a, b, (point.x, point.y, point.z), (-x, -y, -z), loaded)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _press(
     plates: Plates,
     k: int,
@@ -83,7 +83,7 @@ def _press(
     put(loaded.span[row, 1], loaded.impulse[row, 1], y, fz, fy, z * fy)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def put(span: Array, out: Array, s: float, normal: float, along: float, couple: float) -> None:
     """A load at s goes to the two stations next to it (CELLS + 1, 3); force and moment are kept."""
     at = (s - span[0]) / (span[1] - span[0]) * CELLS

@@ -37,7 +37,7 @@ BOOKS = record(
 CONTACT, WATER, SHIFT, GROUND = 0, 1, 2, 3
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _power(forces: Array, i: int, k: int, v: Record) -> float:
     """Of force k on plate i, with its moment, at a MOTION."""
     total: float = forces[i, k, 0] * v.x + forces[i, k, 1] * v.y + forces[i, k, 2] * v.z
@@ -45,7 +45,7 @@ def _power(forces: Array, i: int, k: int, v: Record) -> float:
     return total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _add_momenta(out: Array, row: int, px: float, py: float, pz: float, x: float, y: float, z: float) -> None:
     """Add an impulse (x, y, z) at a point, and its moment about the origin."""
     out[row, 0], out[row, 1], out[row, 2] = out[row, 0] + x, out[row, 1] + y, out[row, 2] + z
@@ -54,7 +54,7 @@ def _add_momenta(out: Array, row: int, px: float, py: float, pz: float, x: float
     out[row, 5] += px * y - py * x
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def outside(plates: Plates, hulls: Hulls, forces: Array, dt: float, momenta: Array) -> None:
     """Adds the momenta (4, 6) that plates receive in a sub-step from water and weight, and by their shift."""
     for i in range(plates.moved.shape[0] - 1):
@@ -103,7 +103,7 @@ def kick(plates: Plates, hulls: Hulls, thrust: Array, forces: Array, pressure: A
         v.a, v.b, v.c = v.a + dt * x, v.b + dt * y, v.c + dt * z
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def book_step(forces: Array, before: Records, plates: Plates, dt: float, books: Record) -> None:
     """Adds what the whole forces (n, 0, 6) that `kick` has left do for the change of the motion since ``before``."""
     total = 0.0
@@ -112,7 +112,7 @@ def book_step(forces: Array, before: Records, plates: Plates, dt: float, books: 
     books.stepping += 0.5 * dt * total
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def book_contacts(
     rows: Rows,
     count: int,
@@ -160,7 +160,7 @@ def book_contacts(
             books.friction_ice += rubbed
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def sum_contacts(rows: Rows, count: int, sums: Array, nodes: Records, momenta: Array) -> None:
     """Adds the impulses of a sub-step to ``sums`` (n, 9) of the plates, to nodes of the sheet, to what comes in."""
     for c in range(count):
@@ -187,7 +187,7 @@ def sum_contacts(rows: Rows, count: int, sums: Array, nodes: Records, momenta: A
                 sums[point.a, 3] += push
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _on_nodes(nodes: Records, at: Record, x: float, y: float, z: float) -> None:
     """Divide an impulse (x, y, z) on the sheet between the two nodes next to it, see `rows.locate`."""
     front, rear, w = nodes[at.front], nodes[at.rear], at.weight
@@ -199,7 +199,7 @@ def _on_nodes(nodes: Records, at: Record, x: float, y: float, z: float) -> None:
     rear.impulse_z += (1.0 - w) * z - x * at.lever
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def book_structure(rows: Rows, count: int, moving: Moving) -> None:
     """Impulses of a sub-step on the structure, with their moments, and what it does on plates by moving."""
     out, d = moving.wrench, moving.place

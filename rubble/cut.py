@@ -89,7 +89,7 @@ def open_water(_y: float) -> Cut:
     return plane(())
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def distance_to(face: Record, x: float, z: float) -> float:
     """From a point to a face [m]."""
     ex, ez = face.x1 - face.x0, face.z1 - face.z0
@@ -99,7 +99,7 @@ def distance_to(face: Record, x: float, z: float) -> float:
     return distance
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def nearest(faces: Records, x: float, z: float) -> int:
     """Number of the face nearest to a point; the first of equals."""
     best, least = 0, np.inf

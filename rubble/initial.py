@@ -22,7 +22,6 @@ from math import inf, sqrt
 import numpy as np
 
 from rubble.domain import Domain
-from rubble.energy import mechanical_energy
 from rubble.geometry import place
 from rubble.layer import RubbleLayer
 from rubble.piece import Slab
@@ -148,7 +147,7 @@ def _fill(layer: RubbleLayer, key: int, corner: tuple[float, float], heap: Heap,
 
 
 def _calm(layer: RubbleLayer, fronts: Fronts, above: bool) -> float:
-    energy, t = mechanical_energy(layer), layer.table()
+    (moving, _), t = layer.runner.energies(layer.store), layer.table()
     top = np.mean([z for _, z in fronts.values()])
     lift = layer.physics.g * (1.0 if above else layer.physics.rho_w / layer.physics.rho_i - 1.0)
-    return (energy["kinetic"] + energy["added"]) / max(lift * float(t.mass @ np.abs(t.position[:, 2] - top)), 1.0)
+    return moving / max(lift * float(t.mass @ np.abs(t.position[:, 2] - top)), 1.0)

@@ -29,7 +29,7 @@ def no_joints() -> Joints:
     return Joints(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3)))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def joint_rows(scene: Scene, joints: Joints, rows: Rows, old: Rows, found: int, before: int) -> int:
     """Adds a row for each joint, held in three directions; returns the number of rows, -1 if there is no room.
 

@@ -27,7 +27,7 @@ from rubble.readings import Readings
 from rubble.round import closed
 from rubble.section import Section
 from rubble.sections import SectionTable
-from rubble.sheet import MEETS, SheetBody, SheetMotion, Sheets
+from rubble.sheet import IMPULSE, MEETS, MET, SheetBody, SheetMotion, Sheets
 from rubble.shore import follow
 from rubble.store import Store
 from rubble.window import NO_BODY, Runner
@@ -190,14 +190,13 @@ class RubbleLayer(Readings):
 
         ``nodes`` (m, 11): what `sheet.MEETS` names, of all sections with a sheet, in their order, front first.
         """
-        known = self.runner.edges.nodes
+        known = rows(self.runner.edges.nodes)
         if nodes.shape != (len(known), len(MEETS)):
             raise ValueError(f"sheet: {len(known)} nodes were given when the window began, now {len(nodes)}")
-        before = rows(known, "impulse_x", 3).copy()
-        rows(known, MEETS[0], 2)[:] = nodes[:, :2]
-        rows(known, MEETS[2], len(MEETS) - 2)[:] = nodes[:, 2:]
+        known[:, MET], impulse = nodes, known[:, IMPULSE]
+        before = impulse.copy()
         self._go(1)
-        return np.asarray((rows(known, "impulse_x", 3) - before) / self.physics.substep)
+        return np.asarray((impulse - before) / self.physics.substep)
 
     def begin(self) -> None:
         """A window begins, of which `meet` does the sub-steps."""

@@ -42,7 +42,7 @@ def stand(moving: Moving, place: Array, velocity: Array) -> None:
     moving.turn[:] = np.cos(place[4]), np.sin(place[4])
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def move_structure(moving: Moving, dt: float) -> None:
     """A sub-step on."""
     for d in range(6):
@@ -50,28 +50,28 @@ def move_structure(moving: Moving, dt: float) -> None:
     moving.turn[0], moving.turn[1] = np.cos(moving.place[4]), np.sin(moving.place[4])
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def in_plane(moving: Moving, y: float) -> tuple[float, float]:
     """How far the structure has shifted along x and z in the plane y [m]."""
     d = moving.place
     return d[0] - d[5] * (y - d[1]), d[2] + d[3] * (y - d[1])
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def turned(moving: Moving, x: float, z: float) -> tuple[float, float]:
     """A direction in the structure's axes as it is in the plane."""
     cos, sin = moving.turn[0], moving.turn[1]
     return cos * x + sin * z, cos * z - sin * x
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def aside(moving: Moving, x: float, z: float) -> float:
     """How far a point of the structure, at x and z in its own axes, has gone along y [m]."""
     d = moving.place
     return float(d[1] + d[5] * x - d[3] * z)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def own_axes(moving: Moving, y: float, x: float, z: float) -> tuple[float, float]:
     """A point of the plane y in the structure's axes, x and z [m]."""
     sx, sz = in_plane(moving, y)
@@ -79,7 +79,7 @@ def own_axes(moving: Moving, y: float, x: float, z: float) -> tuple[float, float
     return cos * (x - sx) - sin * (z - sz), sin * (x - sx) + cos * (z - sz)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def from_axes(moving: Moving, y: float, x: float, z: float) -> tuple[float, float]:
     """The same back."""
     sx, sz = in_plane(moving, y)
@@ -87,7 +87,7 @@ def from_axes(moving: Moving, y: float, x: float, z: float) -> tuple[float, floa
     return sx + tx, sz + tz
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def speed_of_structure(moving: Moving, point: Record, way: Record) -> float:
     """Of the structure at a point of a row along one of its directions [m/s]."""
     d, v = moving.place, moving.velocity

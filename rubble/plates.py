@@ -64,7 +64,7 @@ def empty(count: int) -> Plates:
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def turn_back(r: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     """R' v: a vector of the fixed axes in those of a plate."""
     return (
@@ -74,7 +74,7 @@ def turn_back(r: Array, x: float, y: float, z: float) -> tuple[float, float, flo
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def times(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     """M v."""
     return (
@@ -99,7 +99,7 @@ def orient(plates: Plates, i: int) -> None:
             world[b, a] = world[a, b]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def orient_all(plates: Plates) -> None:
     """The same for all plates."""
     for i in range(plates.moved.shape[0]):
@@ -131,7 +131,7 @@ def turn(plates: Plates, i: int, dt: float) -> float:
     return float(0.5 * (v.a * lx + v.b * ly + v.c * lz - before))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def move_all(plates: Plates, dt: float) -> float:
     """Move all plates on by ``dt`` with motion and shift; the shift is left for the books. Returns as `turn`."""
     gained = 0.0
@@ -142,7 +142,7 @@ def move_all(plates: Plates, dt: float) -> float:
     return gained
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def kinetic(plates: Plates) -> float:
     """Kinetic energy of all plates with added mass [J]."""
     total = 0.0

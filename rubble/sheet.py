@@ -38,6 +38,8 @@ NODE = record(
 )
 #: what a sub-step is told of a node in lockstep, in this order
 MEETS = ("x", "z", "v_x", "v_y", "v_z", "gain_x", "gain_y", "gain_z", "light_x", "light_y", "light_z")
+#: their places among the numbers of a node, and those of its impulse
+MET, IMPULSE = [(NODE.names or ()).index(name) for name in MEETS], slice((NODE.names or ()).index("impulse_x"), None)
 ICE, SHEET_CATEGORY, STRUCTURE_CATEGORY = 1, 0b10, 0b100  #: collision type and categories, see `section`
 
 SAME = 1e-9 / 3.0  #: places that are nearer to each other are one, in thicknesses
@@ -109,7 +111,7 @@ class SheetBody:
     @property
     def impulse(self) -> Array:
         """(m, 3) on the nodes over the window; a view [N s]."""
-        return rows(self.nodes, "impulse_x", 3)
+        return rows(self.nodes)[:, IMPULSE]
 
     def replace_shapes(self, local: Array) -> None:
         """Other shapes, with corners (polygons, 4, 2): their contacts begin anew."""

@@ -12,7 +12,7 @@ from rubble.compiled import compiled
 from rubble.edges import Edges, still_edges
 from rubble.pointers import set_corners
 from rubble.sections import SET_CORNERS, SectionTable
-from rubble.sheet import NODE, SAME, SheetBody, Sheets, sheet_polygons
+from rubble.sheet import IMPULSE, NODE, SAME, SheetBody, Sheets, sheet_polygons
 
 Yields = tuple[dict[int, int], Array]  #: place of a section's edge by its number, and (2, k, k) [1/kg]
 DRIFTED, OTHER_CORNERS, OTHER_NUMBER = 0, 1, 2  #: what has become of the outline of a section
@@ -97,7 +97,7 @@ def edges_of(sections: SectionTable, yields: Yields | None) -> Edges:
 def _nodes(sections: SectionTable) -> tuple[Any, IntArray]:
     own = [NO_NODES if s.sheet is None else s.sheet.nodes for s in sections.by_key.values()]
     nodes = gathered(own, NODE).view(NODE).reshape(-1)
-    rows(nodes, "impulse_x", 3)[:] = 0.0
+    rows(nodes)[:, IMPULSE] = 0.0
     return nodes, np.cumsum([0, *map(len, own)], dtype=np.int64)
 
 

@@ -39,7 +39,7 @@ def side_room(count: int) -> Sides:
     return Sides(np.zeros((count, 2), np.int64), np.zeros((count, 3)), np.zeros((count, 2, 3)), np.zeros(count))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
     """Adds a row for each pair of sides that overlap; returns the number of rows, -1 if there is no room.
 
@@ -79,13 +79,13 @@ def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, bef
     return c
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _earlier(p: Record, a: int, b: int) -> bool:
     earlier: bool = p.feature == SIDE and (p.slot_a < a or (p.slot_a == a and p.slot_b < b))
     return earlier
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def directions(rows: Rows, c: int, n: Array) -> None:
     """n, and two directions across it: the first lies flat where n leads out of the plane, else in the plane."""
     tx, ty, tz = (n[1], -n[0], 0.0) if abs(n[1]) > 0.5 else (-n[2], 0.0, n[0])

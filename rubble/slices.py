@@ -120,7 +120,7 @@ def cut_piece(plates: Plates, pieces: Pieces, slices: Slices, s: int, y: float) 
     return moved
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def strayed(plates: Plates, slices: Slices, s: int) -> float:
     """How far slice s has come along y since it was cut [m]."""
     k, b = slices.plate[s], slices.anchor[s]

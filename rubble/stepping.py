@@ -106,7 +106,7 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
     return n
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _move_sheet(edges: Edges, dt: float) -> None:
     """Nodes move with the sheet and with the edge that yields."""
     for e in range(edges.motion.shape[0]):
@@ -117,7 +117,7 @@ def _move_sheet(edges: Edges, dt: float) -> None:
             node.z += dt * (node.v_z + z)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _kick_sheet(edges: Edges, dt: float) -> None:
     """Velocities after what the lattice does in a sub-step."""
     for k in range(edges.nodes.shape[0]):
@@ -128,7 +128,7 @@ def _kick_sheet(edges: Edges, dt: float) -> None:
             push_edge(edges.yields, edges.motion, e, -dt * edges.carried[e, 0], -dt * edges.carried[e, 1])
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _sum_water(forces: Array, dt: float, sums: Records) -> None:
     """Adds the impulses of the water on all plates, x and z."""
     out = sums[0]
@@ -141,7 +141,7 @@ def _sum_water(forces: Array, dt: float, sums: Records) -> None:
         out.drag_z += dt * forces[i, 2, 2]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _flatten(plates: Plates) -> None:
     """Take what leads out of the plane from all motions."""
     for i in range(plates.moved.shape[0] - 1):

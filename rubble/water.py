@@ -126,7 +126,7 @@ def _head(edge: Record, wet: Wet, push: float) -> Plane:
     return Plane(normal * edge.t_z, -normal * edge.t_x, moment)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _add(out: Array, r: Array, y: float, f: Plane) -> None:
     """Add a force in the plane y of a plate to ``out`` (6,), fixed axes."""
     x, y_, z = times(r, f.x, 0.0, f.z)
@@ -135,7 +135,7 @@ def _add(out: Array, r: Array, y: float, f: Plane) -> None:
     out[3], out[4], out[5] = out[3] + a, out[4] + b, out[5] + c
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _add_at(out: Array, r: Array, at: tuple[float, float, float], x: float, y: float, z: float) -> None:
     """Add a force (x, y, z) at a point, both in the plate's axes, to ``out`` (6,), fixed axes."""
     a, b, c = times(r, at[1] * z - at[2] * y, at[2] * x - at[0] * z, at[0] * y - at[1] * x)
@@ -144,7 +144,7 @@ def _add_at(out: Array, r: Array, at: tuple[float, float, float], x: float, y: f
     out[3], out[4], out[5] = out[3] + a, out[4] + b, out[5] + c
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _piece_force(i: int, plates: Plates, hulls: Hulls, water: Water, out: Array) -> float:
     """Adds the water's force on piece i to ``out``, see `plate_forces`; returns the lowest height of its top."""
     k, y = hulls.plate[i], hulls.y[i]
@@ -183,7 +183,7 @@ def _piece_force(i: int, plates: Plates, hulls: Hulls, water: Water, out: Array)
     return lowest
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def plate_forces(plates: Plates, hulls: Hulls, water: Water, forces: Array, lowest: Array) -> None:
     """Forces and moments of the water on all plates, fixed axes [N, N m], and the lowest point of each top (n,) [m].
 
@@ -196,7 +196,7 @@ def plate_forces(plates: Plates, hulls: Hulls, water: Water, forces: Array, lowe
         lowest[k] = min(lowest[k], _piece_force(i, plates, hulls, water, forces[k]))
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def fill_tops(plates: Plates, water: Water, lowest: Array, dt: float) -> None:
     """The part of the head on each top grows where water has come over its edge, and goes where it is dry."""
     for k in range(plates.moved.shape[0] - 1):
@@ -206,7 +206,7 @@ def fill_tops(plates: Plates, water: Water, lowest: Array, dt: float) -> None:
             plates.flooded[k] = 0.0
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def potential(plates: Plates, hulls: Hulls, mass: Array, water: Water, g: float, afloat: float, out: Array) -> None:
     """Energy of weight and of water all around of each plate (n,) [J], from ice that floats flat (`RubblePhysics`)."""
     for k in range(plates.moved.shape[0] - 1):

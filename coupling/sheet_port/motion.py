@@ -72,6 +72,8 @@ class Motion:
         return self._place(nodes, state, t)
 
     def _place(self, nodes: IntArray, s: State, t: float) -> Array:
-        out = self.sheet.grid.xy[nodes]
-        out[:, 0] = out[:, 0] - self.setback + self.velocity * t
-        return np.hstack((out + s.u[nodes], self.z_mid + s.q[nodes, :1]))
+        out, xy = np.empty((len(nodes), 3)), self.sheet.grid.xy[nodes]
+        xy[:, 0] = xy[:, 0] - self.setback + self.velocity * t
+        np.add(xy, s.u[nodes], out=out[:, :2])
+        np.add(self.z_mid, s.q[nodes, 0], out=out[:, 2])
+        return out
