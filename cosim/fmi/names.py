@@ -8,6 +8,16 @@ from coupling.interface import FREEDOMS, PHASES
 LOAD = (*AXES, *MOMENT_AXES)  #: of all phases, means over the step [N], [N m]
 BY_PHASE = tuple(f"{phase}_{name}" for phase in PHASES for name in LOAD)
 
+#: units in SI, for masters that convert: exponents of kg, m, s, rad
+UNITS: dict[str, dict[str, int]] = {
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "m": {"m": 1},
+    "rad": {"rad": 1},
+    "m/s": {"m": 1, "s": -1},
+    "rad/s": {"rad": 1, "s": -1},
+}
+
 
 def unit_of(name: str) -> str:
     """Of a variable: N, N.m, m, rad, m/s or rad/s, as FMI writes them."""

@@ -1,11 +1,11 @@
 """From a fragment of the sheet to a rigid plate: its pieces, column by column, and the motion of its nodes.
 
-The plate lies in the plane through the fragment's nodes. Each gapless run of a column is a piece, as long as its ice and
-as thick as the sheet. The whole plate, with the ice that was crushed off its edge and that the lattice has moved until
-now, has the linear and the angular momentum of the nodes, all six components: whatever ice does not move as a rigid
-body does, that part of its energy is released. A node's mass stands in the middle of its ice, as everywhere but at the
-rim of the floe it does in the lattice; there lies the plate's centre too, so that a hand-over is the same for every
-observer who moves uniformly.
+The plate lies in the plane through the fragment's nodes. Each gapless run of a column is a piece, as long as its ice
+and as thick as the sheet. The whole plate, with the ice that was crushed off its edge and that the lattice has moved
+until now, has the linear and the angular momentum of the nodes, all six components: whatever ice does not move as a
+rigid body does, that part of its energy is released. A node's mass stands in the middle of its ice, as everywhere but
+at the rim of the floe it does in the lattice; there lies the plate's centre too, so that a hand-over is the same for
+every observer who moves uniformly.
 """
 
 from __future__ import annotations

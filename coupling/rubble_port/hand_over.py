@@ -100,7 +100,7 @@ def _crushed(
     every: Sequence[tuple[Prism, Array]], rest: Sequence[tuple[Prism, Array]], start: Start, whole: Plate
 ) -> Array:
     """Momentum of what is in ``every`` prism and not in the ``rest``, and its moment about the whole's centre (6,)."""
-    centre = np.linalg.solve(whole.rotation, whole.position - start.position)
+    centre = np.asarray(np.linalg.solve(whole.rotation, whole.position - start.position), np.float64)
     mass, first, second = _moments(every, centre)
     if rest:
         kept = _moments(rest, centre)
@@ -142,4 +142,4 @@ def _missed(left: Momenta, found: Array, centre: Array, least: Array) -> tuple[f
 
 def _about_0(momenta: Array, centre: Array) -> Array:
     """Momentum and its moment about the origin (6,), from that about a centre."""
-    return momenta + np.concatenate([np.zeros(3), np.cross(centre, momenta[:3])])
+    return np.concatenate([momenta[:3], momenta[3:] + np.cross(centre, momenta[:3])])

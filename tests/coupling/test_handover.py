@@ -99,7 +99,9 @@ def test_a_gap_in_the_rows_makes_two_pieces():
 def handed_over(ahead, f=None, boost=(0.0, 0.0, 0.0), pitch=D):
     """What a port says of a fragment whose front stands ``ahead`` of the middle of a slope, and its layer."""
     physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, added_mass=0.2)
-    port = RubblePort(plane_slope(np.pi / 4, top=5.0, toe_depth=20.0), physics, pitch=pitch, origin=1.0, domain=Domain())
+    port = RubblePort(
+        plane_slope(np.pi / 4, top=5.0, toe_depth=20.0), physics, pitch=pitch, origin=1.0, domain=Domain()
+    )
     f = f or fragment()
     f = replace(f, position=f.position + np.array([ahead, 0.0, 0.0]), velocity=f.velocity + np.array(boost))
     return port.add(f), port.layer
