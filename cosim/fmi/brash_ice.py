@@ -13,9 +13,11 @@ from pythonfmu.enums import Fmi2Status
 
 from cosim.analysis.run_data import MOTION
 from cosim.fmi.driven import Driven
+from cosim.fmi.lasting import lasting
 from cosim.fmi.names import BY_PHASE, LOAD, UNITS, about, unit_of
 
 
+@lasting
 class BrashIce(Fmi2Slave):  # type: ignore[misc]
     """Ice against a structure whose motion is given; steps are whole time windows of the case."""
 

@@ -14,9 +14,11 @@ from pythonfmu3.fmi3slave import Fmi3StepResult
 
 from cosim.analysis.run_data import MOTION
 from cosim.fmi.driven import Driven
-from cosim.fmi.names import BY_PHASE, LOAD, UNITS, about, unit_of
+from cosim.fmi.lasting import lasting
+from cosim.fmi.names import BY_PHASE, LOAD, TIME, UNITS, about, unit_of
 
 
+@lasting
 class BrashIce(Fmi3Slave):  # type: ignore[misc]
     """Ice against a structure whose motion is given; steps are whole time windows of the case."""
 
@@ -26,6 +28,7 @@ class BrashIce(Fmi3Slave):  # type: ignore[misc]
         self.description = self._driven.scenario.title
         self.default_experiment = DefaultExperiment(0.0, self._driven.end, self._driven.window)
         self.register_units([Unit(name, **base) for name, base in UNITS.items()])
+        self._register(TIME, Fmi3Causality.independent, None)
         for name in MOTION:
             self._register(name, Fmi3Causality.input, partial(self._driven.values.__setitem__, name))
         for name in (*LOAD, *BY_PHASE):

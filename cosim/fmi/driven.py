@@ -9,7 +9,7 @@ import numpy as np
 
 from cosim.analysis.run_data import MOTION
 from cosim.fmi.ice import Ice, Refused
-from cosim.fmi.names import BY_PHASE, LOAD
+from cosim.fmi.names import BY_PHASE, LOAD, TIME
 from cosim.scenario.loading import load_scenario
 
 
@@ -20,7 +20,7 @@ class Driven:
         """InputError or ScenarioError if the scenario there cannot be read."""
         self.scenario = load_scenario(str(Path(resources) / "scenario.toml"))
         self.window, self.end = self.scenario.window_ns / 1e9, self.scenario.duration_ns / 1e9  #: [s]
-        self.values = dict.fromkeys((*MOTION, *LOAD, *BY_PHASE), 0.0)
+        self.values = dict.fromkeys((TIME, *MOTION, *LOAD, *BY_PHASE), 0.0)
         self._ice: Ice | None = None
         self._stopped = ""  #: why the run cannot go on
 
@@ -42,7 +42,7 @@ class Driven:
         except Exception as error:  # nothing may pass the border of the library
             self._stopped = f"{type(error).__name__}: {error}"
             return False, self._stopped
-        self.values.update(self._ice.loads)
+        self.values |= {TIME: self._ice.t, **self._ice.loads}
         return True, ""
 
     def save(self) -> Callable[[], None]:

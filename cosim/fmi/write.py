@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 import sys
 import tempfile
+import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -41,7 +42,7 @@ def write_fmu(scenario: Scenario, out: Path, version: int = 2) -> None:
                 raise InputError(
                     "writing an FMU needs pythonfmu and pythonfmu3: pip install 'brash-ice[fmi]'"
                 ) from None
-        shutil.copyfile(made, out)
+        _copy(made, out)
 
 
 def _build(version: int, script: Path, folder: Path, files: list[Path]) -> Path:
@@ -56,6 +57,14 @@ def _build(version: int, script: Path, folder: Path, files: list[Path]) -> Path:
 
     three = {"canGetAndSetFMUState": True, SINGLE: False, "canHandleVariableCommunicationStepSize": True}
     return Path(Builder.build_FMU(script, folder, files, **three))
+
+
+def _copy(made: Path, out: Path) -> None:
+    """Without the sources of the library inside: FMI 3.0 wants a description of how to build them."""
+    with zipfile.ZipFile(made) as whole, zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as part:
+        for entry in whole.infolist():
+            if not entry.filename.startswith("sources/"):
+                part.writestr(entry.filename, whole.read(entry))
 
 
 @contextmanager
