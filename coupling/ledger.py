@@ -1,7 +1,7 @@
 """Balances of a run, checked in every window: what was there is still there, under its name.
 
-Mass: sheet + rubble + crushed + cleared = initial. Momentum: the blocks that a fragment has become carry what the
-same ice carried in the sheet. Energy: see `coupling.energy`.
+Mass: sheet + rubble + crushed + cleared = initial. Momentum: the blocks that a fragment has become and the ice that was
+crushed off it carry what it carried in the sheet. Energy: see `coupling.energy`.
 """
 
 from __future__ import annotations
@@ -9,11 +9,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from coupling.energy import EnergyBalance
-from coupling.interface import NS, HandOver, SimulationError
+from coupling.interface import NS, Array, HandOver, SimulationError
 
 ENERGY_TOLERANCE = 1e-3  #: of the work done on the sheet
 MASS_TOLERANCE = 1e-12  #: of the initial mass
+#: momentum of ice that was crushed off what is handed over, its moment about the origin, and the angular momentum that
+#: neighbours of a narrow plate hold
+TAKEN = tuple(f"handover_{name}_{axis}" for name in ("crushed_momentum", "crushed_spin", "held_spin") for axis in "xyz")
 NOTHING = 1e-5  #: work that counts as none, as share of the energy that the floe brings along
 
 
@@ -30,12 +35,15 @@ class Ledger:
     angular_momentum_error: float = 0.0  #: the same about the fragment's centre
     sheet_energy_residual: float = 0.0  #: of the sheet in its drifting frame, relative to the work done on it
     energy: EnergyBalance = field(default_factory=EnergyBalance)  #: of the whole system
+    #: (9,) `TAKEN` of all hand-overs [N s], [N m s]
+    taken: Array = field(default_factory=lambda: np.zeros(len(TAKEN)))
     _work: float = 0.0
 
     def hand_over(self, t_ns: int, moved: HandOver) -> None:
         """Books one fragment."""
         self.trimmed_mass += moved.trimmed
         self.handed_over_mass += moved.mass - moved.trimmed
+        self.taken = self.taken + np.concatenate([moved.crushed, moved.held])
         self.momentum_error = max(self.momentum_error, moved.momentum_error)
         self.angular_momentum_error = max(self.angular_momentum_error, moved.angular_momentum_error)
         self._check("momentum of a hand-over", moved.momentum_error, t_ns)
@@ -66,6 +74,7 @@ class Ledger:
             "crushed_mass": crushed,
             "cleared_mass": cleared,
             "mass_error": error,
+            **dict(zip(TAKEN, self.taken.tolist(), strict=True)),
         }
         if sheet_energy:
             self._check("energy of the sheet", self._sheet(sheet_energy), t_ns, ENERGY_TOLERANCE)

@@ -28,6 +28,7 @@ LIBRARIES = {
     "rerun_cli": {"cosim/show/viewer.py"},
     "fmpy": {"cosim/fmi/structure.py"},
     "pythonfmu": {"cosim/fmi/brash_ice.py", "cosim/fmi/write.py"},
+    "pythonfmu3": {"cosim/fmi/brash_ice_3.py", "cosim/fmi/write.py"},
 }
 SOLVER_LIBRARIES = {"pymunk": "rubble", "typer": "cosim", "rich": "cosim", "pydantic": "cosim", "pint": "cosim"}
 SOURCES = sorted(file for package in PACKAGES for file in (ROOT / package).rglob("*.py"))

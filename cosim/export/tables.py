@@ -79,6 +79,9 @@ UNITS = (
     ("_repeats", "1"),
     ("cleared_momentum_", "N s"),
     ("crushed_momentum_", "N s"),
+    ("handover_crushed_momentum_", "N s"),
+    ("handover_crushed_spin_", "N m s"),
+    ("handover_held_spin_", "N m s"),
     *((ending, "1") for ending in ("_error", "_change", "_windows")),
     ("_mass", "kg"),
 )

@@ -37,6 +37,10 @@ class Given:
         self.displacement, self.velocity = displacement, velocity
 
 
+class Refused(SimulationError):
+    """A step that cannot be done and has left everything as it was."""
+
+
 class Ice:
     """A case of which others move the structure, in steps of whole time windows."""
 
@@ -56,17 +60,19 @@ class Ice:
     def step(self, t: float, length: float, displacement: Array, velocity: Array) -> None:
         """From ``t`` on so long [s]; the structure starts at ``displacement`` (6,) and goes with ``velocity`` (6,).
 
-        SimulationError if the step is not one of whole windows from now on, or the run cannot go on.
+        Refused if the step is not one of whole windows from now on, SimulationError if the run cannot go on.
         """
+        if not np.isfinite([t, length]).all():
+            raise Refused(f"a step from {t:g} s of {length:g} s")
         windows, rest = divmod(round(length * NS), self.window_ns)
         if rest or windows < 1:
-            raise SimulationError(f"a step of {length:g} s is no whole number of windows of {self.window_ns / NS:g} s")
+            raise Refused(f"a step of {length:g} s is no whole number of windows of {self.window_ns / NS:g} s")
         if round(t * NS) != self._scheduler.t_ns:
-            raise SimulationError(f"a step from {t:g} s, but the ice is at {self.t:g} s: go on from there")
+            raise Refused(f"a step from {t:g} s, but the ice is at {self.t:g} s: go on from there")
         if self._scheduler.t_ns + round(length * NS) > self._end_ns:
-            raise SimulationError(f"the case ends at {self._end_ns / NS:g} s: raise scenario.duration")
+            raise Refused(f"the case ends at {self._end_ns / NS:g} s: raise scenario.duration")
         if not (np.isfinite(displacement).all() and np.isfinite(velocity).all()):
-            raise SimulationError(f"t = {t:g} s: the motion of the structure is not finite")
+            raise Refused(f"t = {t:g} s: the motion of the structure is not finite")
         self.given._set(np.array(displacement, np.float64), np.array(velocity, np.float64))
         total = np.zeros((3, 6))
         with threadpool_limits(1):

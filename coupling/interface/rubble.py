@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -61,16 +61,20 @@ class BlockTable:
 
 @dataclass(frozen=True)
 class HandOver:
-    """Balance of one fragment: what left the lattice and what arrived as blocks.
+    """Balance of one fragment: what left the lattice and what arrived as blocks or was crushed.
 
-    Momentum that ice brings which is trimmed off is not lost: an error is that of the ice that has become blocks.
+    Momenta are those of all its ice: what was crushed off its edge moves with the lattice until then.
     """
 
     blocks: int
     mass: float  #: of the fragment, without what was crushed before [kg]
     trimmed: float  #: cut off because it lay inside the structure, crushed [kg]
-    momentum_error: float  #: of the blocks' momentum in the layer against that of the same ice in the sheet, relative
+    momentum_error: float  #: of that of the blocks in the layer and of the crushed ice against the sheet's, relative
     angular_momentum_error: float = 0.0  #: the same about the fragment's centre of mass, three components
+    #: (6,) momentum that crushed ice takes along, before and now, and its moment about the origin [N s], [N m s]
+    crushed: Array = field(default_factory=lambda: np.zeros(6))
+    #: (3,) angular momentum that neighbours of a narrow block hold, which turns about y alone [N m s]
+    held: Array = field(default_factory=lambda: np.zeros(3))
 
 
 class RubbleParticipant(Protocol):

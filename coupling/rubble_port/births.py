@@ -1,8 +1,11 @@
 """From a fragment of the sheet to a rigid plate: its pieces, column by column, and the motion of its nodes.
 
-The plate lies in the plane through the fragment's nodes. Each gapless run of a column is a piece, as long as its ice,
-as thick as the sheet, with the edge cut off where it was crushed. The plate has the linear and the angular momentum of
-the nodes, all six components: whatever ice does not move as a rigid body does, that part of its energy is released.
+The plate lies in the plane through the fragment's nodes. Each gapless run of a column is a piece, as long as its ice
+and as thick as the sheet. The whole plate, with the ice that was crushed off its edge and that the lattice has moved
+until now, has the linear and the angular momentum of the nodes, all six components: whatever ice does not move as a
+rigid body does, that part of its energy is released. A node's mass stands in the middle of its ice, as everywhere but
+at the rim of the floe it does in the lattice; there lies the plate's centre too, so that a hand-over is the same for
+every observer who moves uniformly.
 """
 
 from __future__ import annotations
@@ -19,28 +22,32 @@ from coupling.interface import Array, Fragment, IntArray
 class PieceBirth:
     """A piece before the structure trims it, in the axes of its plate."""
 
-    polygon: Array  #: (k, 2) outline in x, z, counter-clockwise [m]
+    whole: Array  #: (4, 2) outline in x, z with what was crushed off its edge, counter-clockwise [m]
+    polygon: Array  #: (k, 2) without that; of no area if nothing is left [m]
     width: float  #: [m]
     y: float  #: of its middle [m]
 
 
 @dataclass(frozen=True)
 class Momenta:
-    """Of a fragment's nodes."""
+    """Of a fragment's nodes with their whole ice."""
 
+    centre: Array  #: (3,) of their mass [m]
     linear: Array  #: (3,) [N s]
-    angular: Array  #: (3,) about a point [N m s]
-    scale: Array  #: (2,) what each would be if no parts cancelled
+    spin: Array  #: (3,) about the centre, the same for every observer [N m s]
+    scale: Array  #: (2,) what each would be if no parts cancelled, the second with the velocity of the centre
 
     @classmethod
-    def of(cls, f: Fragment, thickness: float, about: Array) -> Momenta:
-        """About a point (3,)."""
-        mass = np.maximum(f.mass, 0.0)[:, None]
-        arm, p = f.position - about, mass * f.velocity
-        spin = np.cross(arm, p)
-        spin[:, 1] += mass[:, 0] * thickness**2 / 12.0 * f.tilt_rate  # rotary inertia of a node (2.22)
-        scale = np.array([np.abs(p).sum(), np.abs(spin).sum()])
-        return cls(p.sum(axis=0), spin.sum(axis=0), scale)
+    def of(cls, f: Fragment, thickness: float, density: float) -> Momenta:
+        """``density`` [kg/m^3]."""
+        mass, at = density * thickness * f.length * f.width, _ice(f)
+        centre = np.average(at, axis=0, weights=mass)
+        p, mean = mass[:, None] * f.velocity, np.average(f.velocity, axis=0, weights=mass)
+        spin = np.cross(at - centre, mass[:, None] * (f.velocity - mean))
+        rotary = mass * thickness**2 / 12.0 * f.tilt_rate  # inertia of a node (2.22)
+        scale = np.array([np.abs(p).sum(), np.abs(np.cross(at - centre, p)).sum() + np.abs(rotary).sum()])
+        spin[:, 1] += rotary
+        return cls(centre, p.sum(axis=0), spin.sum(axis=0), scale)
 
 
 def frame_of(f: Fragment, thickness: float) -> tuple[Array, Array]:
@@ -78,18 +85,19 @@ def births(f: Fragment, thickness: float, origin: Array, axes: Array) -> Iterato
         rows = np.unique(f.row[f.column == column])
         for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
             n = np.flatnonzero((f.column == column) & np.isin(f.row, run))
-            if f.mass[n].sum() > 0.0:
-                yield _birth(f, thickness, n[np.argsort(f.row[n])], (_ice(f)[n] - origin) @ axes)
+            n = n[np.argsort(f.row[n])]
+            yield _birth(f, thickness, n, (_ice(f)[n] - origin) @ axes)
 
 
 def _birth(f: Fragment, h: float, n: IntArray, at: Array) -> PieceBirth:
     """``at`` (k, 3): middles of the ice of nodes ``n``, front first, in the axes of the plate."""
     length = f.length[n]
-    front = float((at[:, 0] + np.cumsum(length) - 0.5 * length).mean())
+    front = float(np.average(at[:, 0] + np.cumsum(length) - 0.5 * length, weights=length))
     rear = front - float(length.sum())
     first = n[0]
     outline = _bevelled(rear, front, h, float(f.cut[first]), float(f.cut_tan[first]), f.cut_face)
-    return PieceBirth(outline, float(f.width[n].mean()), float(at[:, 1].mean()))
+    whole = _bevelled(rear, front, h, 0.0, 1.0, 1.0)
+    return PieceBirth(whole, outline, float(f.width[n].mean()), float(np.average(at[:, 1], weights=length)))
 
 
 def _bevelled(rear: float, front: float, h: float, cut: float, tan: float, face: float) -> Array:

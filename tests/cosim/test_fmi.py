@@ -1,5 +1,6 @@
 """The ice as an FMU, and an FMU as the structure: bits, states, errors, validation by FMPy."""
 
+import gc
 import sys
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 
 from cosim.build import build
 from cosim.errors import InputError
+from cosim.fmi.driven import Driven
 from cosim.fmi.ice import Ice
 from cosim.fmi.write import write_fmu
 from cosim.scenario.loading import load_scenario
@@ -15,6 +17,7 @@ from coupling.interface import SimulationError
 
 fmpy = pytest.importorskip("fmpy")
 pytest.importorskip("pythonfmu")
+pytest.importorskip("pythonfmu3")
 
 CASE = "van_vliet_2018_floe_55m_centre"
 SMALL = ("sheet.nodes=[14, 14]", "contact.strength='800 kPa'", "drift.velocity='0.4 m/s'", "scenario.duration='1.5 s'")
@@ -33,13 +36,13 @@ def rests():
     return loads()
 
 
-@pytest.fixture(scope="module")
-def ice_fmu(tmp_path_factory):
+@pytest.fixture(scope="module", params=[2, 3], ids=["fmi2", "fmi3"])
+def ice_fmu(request, tmp_path_factory):
     out = tmp_path_factory.mktemp("fmu") / "ice.fmu"
     before = list(sys.path)
-    write_fmu(load_scenario(CASE, list(SHEET)), out)
+    write_fmu(load_scenario(CASE, list(SHEET)), out, request.param)
     assert sys.path == before
-    assert "brash_ice" not in sys.modules
+    assert {2: "brash_ice", 3: "brash_ice_3"}[request.param] not in sys.modules
     return out
 
 
@@ -53,6 +56,7 @@ def test_fmpy_finds_nothing_wrong(ice_fmu):
     assert all(v.description for v in about.modelVariables)
     assert about.defaultExperiment.stepSize == "0.05"
     assert about.coSimulation.canGetAndSetFMUstate
+    assert about.coSimulation.canHandleVariableCommunicationStepSize
 
 
 def test_it_gives_the_loads_of_a_run_twice_in_one_process(ice_fmu, rests):
@@ -66,49 +70,87 @@ class Held:
     """The ice FMU, step by step."""
 
     def __init__(self, file):
-        from fmpy.fmi2 import FMU2Slave
-
         about = fmpy.read_model_description(str(file))
         self.number = {v.name: v.valueReference for v in about.modelVariables}
-        name = about.coSimulation.modelIdentifier
-        folder = fmpy.extract(str(file))
-        self.fmu = FMU2Slave(guid=about.guid, unzipDirectory=folder, modelIdentifier=name, instanceName="ice")
-        self.fmu.instantiate()
-        self.fmu.setupExperiment(startTime=0.0)
-        self.fmu.enterInitializationMode()
+        self.fmu = fmpy.instantiate_fmu(fmpy.extract(str(file)), about, "CoSimulation")
+        if about.fmiVersion == "2.0":
+            self._get, self._set = self.fmu.getReal, self.fmu.setReal
+            self.fmu.setupExperiment(startTime=0.0)
+            self.fmu.enterInitializationMode()
+        else:
+            self._get, self._set = self.fmu.getFloat64, self.fmu.setFloat64
+            self.fmu.enterInitializationMode(startTime=0.0)
         self.fmu.exitInitializationMode()
 
+    def step(self, t, length):
+        self.fmu.doStep(currentCommunicationPoint=t, communicationStepSize=length)
+
     def set(self, **values):
-        self.fmu.setReal([self.number[n] for n in values], list(values.values()))
+        self._set([self.number[n] for n in values], list(values.values()))
 
     def get(self, *names):
-        return self.fmu.getReal([self.number[n] for n in names])
+        return self._get([self.number.get(n, 9999) for n in names])
 
 
 def test_steps_states_and_what_is_refused(ice_fmu, rests):
     from fmpy.fmi1 import FMICallException
 
     ice = Held(ice_fmu)
-    for t, length in ((0.0, 0.03), (0.05, 0.05), (0.0, 2.0)):
+    for t, length in ((0.0, 0.03), (0.05, 0.05), (0.0, 2.0), (0.0, float("nan")), (float("inf"), 0.05)):
         with pytest.raises(FMICallException):
-            ice.fmu.doStep(t, length)
-    ice.fmu.doStep(0.0, 0.1)  # two windows: their mean
+            ice.step(t, length)
+    ice.step(0.0, 0.1)  # two windows: their mean
     assert ice.get("fx")[0] == pytest.approx(rests[:2, 0].mean(), rel=1e-12)
     state = ice.fmu.getFMUState()
     ends = []
     for _ in range(2):
         ice.set(surge=0.01, surge_rate=0.2)
-        ice.fmu.doStep(0.1, 0.05)
+        ice.step(0.1, 0.05)
         ends.append(ice.get("fx", "breaking_my", "fz"))
         ice.fmu.setFMUState(state)
     assert ends[0] == ends[1]
     assert abs(ends[0][0] - rests[2, 0]) > 1e-2 * rests[2, 0]  # twin: the motion is felt
     ice.set(surge=float("nan"))
     with pytest.raises(FMICallException):
-        ice.fmu.doStep(0.1, 0.05)
+        ice.step(0.1, 0.05)
     ice.set(surge=0.0, surge_rate=0.0)
-    ice.fmu.doStep(0.1, 0.05)
+    ice.step(0.1, 0.05)
     assert ice.get("fx")[0] == pytest.approx(rests[2, 0], rel=1e-12)
+
+
+def test_a_wrong_call_is_an_error_and_no_crash(ice_fmu, rests):
+    """A variable that does not exist, or is not to be set; after a collection of garbage the ice still stands there."""
+    from fmpy.fmi1 import FMICallException
+
+    ice = Held(ice_fmu)
+    for _ in range(3):
+        with pytest.raises(FMICallException, match=r"status 4"):
+            ice.get("no such variable")
+        with pytest.raises(FMICallException, match=r"status 4"):
+            ice.set(fx=1.0)
+        gc.collect()
+        assert ice.get("surge") == [0.0]
+    ice.step(0.0, 0.05)
+    assert ice.get("fx")[0] == pytest.approx(rests[0, 0], rel=1e-12)
+    ice.fmu.terminate()
+    ice.fmu.freeInstance()
+
+
+def test_a_run_that_stops_is_an_error_until_a_state_is_set(monkeypatch, tmp_path):
+    case = load_scenario(CASE, list(SHEET))
+    (tmp_path / "scenario.toml").write_text(case.resolved_toml(), encoding="utf-8")
+    driven = Driven(str(tmp_path))
+    assert driven.step(0.0, 0.05) == (True, "a step before the initialization has ended")
+    driven.start()
+    assert driven.step(0.0, 0.05) == (True, "")
+    back, fx = driven.save(), driven.values["fx"]
+    with monkeypatch.context() as patched:
+        patched.setattr(driven._ice._scheduler, "macro_step", lambda: 1 / 0)
+        assert driven.step(0.05, 0.05) == (False, "ZeroDivisionError: division by zero")
+    assert driven.step(0.05, 0.05)[0] is False
+    back()
+    assert driven.values["fx"] == fx
+    assert driven.step(0.05, 0.05) == (True, "")
 
 
 def test_the_ice_says_what_is_wrong_with_a_step():
@@ -158,8 +200,14 @@ def test_what_is_no_structure_is_refused(tower, ice_fmu, tmp_path):
         write_fmu(load_scenario(CASE, [*SHEET, *SOFT]), tmp_path / "ice.fmu")
 
 
-def test_the_command_writes_it(cosim, tmp_path):
+@pytest.mark.parametrize("version", [2, 3])
+def test_the_command_writes_it(cosim, tmp_path, version):
     out = tmp_path / "ice.fmu"
-    code, said, _ = cosim("fmu", CASE, "-o", str(out), "--set", SHEET[0])
+    code, said, _ = cosim("fmu", CASE, "-o", str(out), "--fmi", str(version), "--set", SHEET[0])
     assert (code, "steps are whole multiples of 0.05 s" in said) == (0, True)
-    assert out.read_bytes()[:2] == b"PK"
+    assert fmpy.read_model_description(str(out)).fmiVersion == f"{version}.0"
+
+
+def test_another_version_is_refused(cosim, tmp_path):
+    code, _, said = cosim("fmu", CASE, "-o", str(tmp_path / "ice.fmu"), "--fmi", "1", "--set", SHEET[0])
+    assert (code, "FMI 1: give one of 2, 3" in said) == (2, True)

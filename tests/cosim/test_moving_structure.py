@@ -1,8 +1,11 @@
 """A structure that moves in whole runs: the limits of a rigid one and of ice at rest, balances, files, recordings."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import coupling.rubble_port.hand_over
 from cosim.build import build
 from cosim.build_motion import build_motion
 from cosim.errors import InputError
@@ -54,6 +57,37 @@ def test_a_cone_that_moves_through_ice_at_rest(rigid):
     assert books["structure_work"] > 1e4
     assert moves[0].ledger.energy.relative < 1e-9
     assert moves[1][-1].motion[0] == pytest.approx([-0.4 * 1.5, 0, 0, 0, 0, 0])
+
+
+def with_ice_at_rest_and_in_motion(windows):
+    """Loads of `first_cone` in ice that drifts, and moved through ice at rest; pieces that have broken off."""
+    drift = ("drift.velocity='0.5 m/s'", "water.current=['0.5 m/s', '0 m/s']")
+    carriage = (*CARRIAGE, "structure.motion.velocity=['-0.5 m/s', '0 m/s', '0 m/s']")
+    drifts = run(windows, *drift, case="first_cone")
+    moves = run(windows, *carriage, "water.current=['0 m/s', '0 m/s']", case="first_cone")
+    return drifts[2], moves[2], (drifts[0].fragments, moves[0].fragments)
+
+
+def test_a_cone_that_moves_through_ice_at_rest_past_hand_overs():
+    """Rounding of places, which are other numbers, and its growth in contacts."""
+    drifts, moves, pieces = with_ice_at_rest_and_in_motion(50)
+    assert pieces == (3, 3)
+    assert off(moves, drifts) < 1e-9
+
+
+def test_hand_overs_about_the_centre_of_what_is_left_are_told_apart(monkeypatch):
+    """Twin: a plate without the ice that was crushed off it, with the nodes' angular momentum about its own centre."""
+    room = coupling.rubble_port.hand_over
+    known, motion = room.births, room._motion
+
+    def other(whole, still, left):
+        shift = np.cross(left.centre - whole.position, left.linear)
+        return motion(whole, still, replace(left, spin=left.spin + shift))
+
+    monkeypatch.setattr(room, "births", lambda *a: (replace(b, whole=b.polygon) for b in known(*a)))
+    monkeypatch.setattr(room, "_motion", other)
+    drifts, moves, _ = with_ice_at_rest_and_in_motion(20)
+    assert off(moves, drifts) > 1e-5
 
 
 @pytest.mark.parametrize(("repeats", "closes"), [(0, 2e-2), (2, 1e-6)])

@@ -96,12 +96,31 @@ def test_a_gap_in_the_rows_makes_two_pieces():
     assert [round(area(b.polygon) / H / D, 6) for b in pieces(gap)] == [1.5, 2.0]
 
 
-def handed_over(ahead, omega=0.05):
+def handed_over(ahead, f=None, boost=(0.0, 0.0, 0.0), pitch=D):
     """What a port says of a fragment whose front stands ``ahead`` of the middle of a slope, and its layer."""
     physics = RubblePhysics(rho_i=846.0, rho_w=1006.0, thickness=H, added_mass=0.2)
-    port = RubblePort(plane_slope(np.pi / 4, top=5.0, toe_depth=20.0), physics, pitch=D, origin=1.0, domain=Domain())
-    f = fragment(omega=omega)
-    return port.add(replace(f, position=f.position + np.array([ahead, 0.0, 0.0]))), port.layer
+    port = RubblePort(
+        plane_slope(np.pi / 4, top=5.0, toe_depth=20.0), physics, pitch=pitch, origin=1.0, domain=Domain()
+    )
+    f = f or fragment()
+    f = replace(f, position=f.position + np.array([ahead, 0.0, 0.0]), velocity=f.velocity + np.array(boost))
+    return port.add(f), port.layer
+
+
+def six(f, about=(0.0, 0.0, 0.0)):
+    """Momentum of all the ice of a fragment's nodes, each in the middle of its ice, and its moment about a point."""
+    ahead = f.lead - 0.5 * f.length
+    at = f.position + np.column_stack([ahead, 0.0 * ahead, -ahead * np.tan(f.tilt)]) - about
+    mass = 846.0 * H * f.length * f.width
+    spin = np.cross(at, mass[:, None] * f.velocity)
+    spin[:, 1] += mass * H**2 / 12.0 * f.tilt_rate
+    return np.concatenate([(mass[:, None] * f.velocity).sum(axis=0), spin.sum(axis=0)])
+
+
+def six_of(layer):
+    """The same of the plates of a layer."""
+    tables = layer.store.tables
+    return momenta(layer.store.plates, tables.mass, tables.spin)
 
 
 @pytest.mark.parametrize("ahead", [-5.0, 1.0])
@@ -114,22 +133,86 @@ def test_a_fragment_is_one_plate_with_its_six_momenta(ahead):
     assert moved.angular_momentum_error < 1e-12
 
 
-def test_the_momenta_are_those_of_the_nodes():
-    _, layer = handed_over(-5.0)
-    f = fragment()
-    at = f.position + np.array([-5.0, 0.0, 0.0])
-    p = f.mass[:, None] * f.velocity
-    spin = np.cross(at, p)
-    spin[:, 1] += f.mass * H**2 / 12.0 * f.tilt_rate
-    tables = layer.store.tables
-    found = momenta(layer.store.plates, tables.mass, tables.spin)
-    np.testing.assert_allclose(found[:3], p.sum(axis=0), rtol=1e-12)
-    np.testing.assert_allclose(found[3:], spin.sum(axis=0), rtol=1e-9)
-    assert not np.allclose(found[3:], -spin.sum(axis=0), rtol=1e-3)
+BOOSTS = [(0.0, 0.0, 0.0), (0.4, 0.0, 0.0), (-3.0, 2.0, 1.0)]
+#: whole and before the slope; crushed before; trimmed on it; both, and off its lower edge
+CUTS = [(-5.0, 0.0, 1.0), (-5.0, 2.0, 1.0), (1.0, 0.0, 1.0), (1.5, 4.0, -1.0)]
+
+
+@pytest.mark.parametrize("boost", BOOSTS)
+@pytest.mark.parametrize(("ahead", "cut", "face"), CUTS)
+def test_what_stays_and_what_is_crushed_have_the_momenta_of_the_nodes(ahead, cut, face, boost):
+    """All six, for any observer; not so without the part of the crushed ice."""
+    f = fragment(cut=cut, face=face)
+    moved, layer = handed_over(ahead, f, boost)
+    at = replace(f, position=f.position + np.array([ahead, 0, 0]), velocity=f.velocity + boost)
+    left, stays = six(at), six_of(layer)
+    size = np.repeat([np.abs(left[:3]).max(), np.abs(left[3:]).max()], 3)
+    assert not moved.held.any()
+    assert (np.abs(stays + moved.crushed - left) < 1e-11 * size).all()
+    if cut or ahead > 0.0:
+        assert np.abs(stays - left).max() > 1e-3 * size.max()
+    assert not np.allclose(stays[3:], -left[3:], rtol=1e-3)
+
+
+def seen(f, ahead, boost):
+    """Motion of the plate that a fragment becomes, for an observer against whom all goes faster by ``boost``."""
+    plate = handed_over(ahead, f, boost)[1].blocks[0]
+    return plate.position.copy(), plate.velocity - boost, plate.omega.copy()
+
+
+@pytest.mark.parametrize("boost", BOOSTS[1:])
+@pytest.mark.parametrize(("ahead", "cut", "face"), CUTS)
+def test_a_hand_over_is_the_same_for_every_observer(ahead, cut, face, boost):
+    """Galilei: a uniform motion of all ice adds to the velocity of the plate and does not turn it."""
+    f = fragment(cut=cut, face=face)
+    for here, there in zip(seen(f, ahead, np.zeros(3)), seen(f, ahead, np.array(boost)), strict=True):
+        np.testing.assert_allclose(there, here, rtol=0.0, atol=1e-13 * max(1.0, np.abs(boost).max()))
+
+
+@pytest.mark.parametrize("about_its_centre", [True, False])
+def test_a_plate_that_forgets_its_crushed_ice_is_rejected(about_its_centre, monkeypatch):
+    """Twins: made of what is left alone, a plate turns as the observer has it, or does not keep the momenta."""
+    room = coupling.rubble_port.hand_over
+    known, motion = room.births, room._motion
+
+    def other(whole, still, left):
+        shift = np.cross(left.centre - whole.position, left.linear)
+        return motion(whole, still, replace(left, spin=left.spin + (shift if about_its_centre else 0.0)))
+
+    monkeypatch.setattr(room, "births", lambda *a: (replace(b, whole=b.polygon) for b in known(*a)))
+    monkeypatch.setattr(room, "_motion", other)
+    f = fragment(cut=2.0)
+    turns = [seen(f, -5.0, np.array([v, 0.0, 0.0]))[2] for v in (0.0, 0.4)]
+    assert (np.abs(turns[1] - turns[0]).max() > 1e-3) == about_its_centre
+    assert (handed_over(-5.0, f)[0].angular_momentum_error > 1e-3) != about_its_centre
+
+
+def test_nothing_is_left_of_a_fragment():
+    """All of it is crushed, and takes all its momenta along."""
+    f = fragment(rows=1)
+    moved, layer = handed_over(30.0, f)
+    assert moved.blocks == len(layer.blocks) == 0
+    assert moved.trimmed == moved.mass
+    at = replace(f, position=f.position + np.array([30.0, 0, 0]))
+    np.testing.assert_allclose(moved.crushed, six(at), rtol=1e-10, atol=1e-10 * np.abs(six(at)).max())
+
+
+def test_what_neighbours_hold_of_a_narrow_plate_is_told():
+    """A plate that one plane alone sees turns about y; the rest of its angular momentum is not lost in silence."""
+    f = fragment(columns=1)
+    f = replace(f, velocity=f.velocity + np.outer(f.position[:, 0], [0.0, 0.03, 0.0]))
+    moved, layer = handed_over(-5.0, f)
+    at = replace(f, position=f.position + np.array([-5.0, 0, 0]))
+    missing = six(at) - six_of(layer)
+    size = np.abs(six(at)[3:]).max()
+    np.testing.assert_allclose(missing[:3], 0.0, atol=1e-10 * size)
+    np.testing.assert_allclose(missing[3:], moved.held, atol=1e-10 * size)
+    assert abs(moved.held[2]) > 1e-2 * size
+    assert moved.angular_momentum_error < 1e-12
 
 
 def test_a_plate_of_a_rigid_fragment_moves_as_it_did():
-    """But for the mass, which nodes have at the edge of their ice and a plate has in its middle."""
+    """But for the ice of a node, which has a length in a plate and none in the lattice (2.22)."""
     _, layer = handed_over(-5.0)
     plate = layer.blocks[0]
     np.testing.assert_allclose(plate.omega, [0.0, -0.05, 0.0], atol=0.01)
@@ -144,11 +227,12 @@ def test_a_hand_over_that_spoils_the_angular_momentum_is_found(monkeypatch):
 def test_angular_momentum_of_a_turning_plate():
     """Nodes in a row, d apart: sum of m x^2 omega about their centre, and m h^2 / 12 each."""
     f = fragment(rows=4, columns=1, turn=0.0, omega=0.05)
-    centre = np.average(f.position, axis=0, weights=f.mass)
-    found = Momenta.of(f, H, centre)
-    x = f.position[:, 0] - centre[0]
-    assert found.angular[1] == pytest.approx(-0.05 * (f.mass * (x**2 + H**2 / 12)).sum(), rel=1e-12)
-    assert found.scale[1] >= abs(found.angular[1])
+    found = Momenta.of(f, H, 846.0)
+    ice = f.position[:, 0] + np.where(f.row == 0, -D / 4, 0.0)
+    assert found.centre[0] == pytest.approx(np.average(ice, weights=f.mass), rel=1e-12)
+    x, swing = ice - found.centre[0], f.velocity[:, 2] - np.average(f.velocity[:, 2], weights=f.mass)
+    assert found.spin[1] == pytest.approx(-(f.mass * (x * swing + 0.05 * H**2 / 12)).sum(), rel=1e-12)
+    assert found.scale[1] >= abs(found.spin[1])
 
 
 @pytest.mark.parametrize(("backfill", "part"), [("filling", 0.375), ("full", 1.0), ("none", 0.0)])
