@@ -91,7 +91,7 @@ class Stills:
 def _load(picture: Picture) -> str:
     """The force that the arrow shows."""
     size = float(np.linalg.norm(picture.forces.force.sum(axis=0))) if len(picture.forces.force) else 0.0
-    return f"; arrow: load {scale_of((size,), 'N').labelled(size)}" if size else "; no load"
+    return f"; arrow: load {scale_of((size,), 'N').labelled(size)} in this window" if size else "; no load"
 
 
 def _split(figure: Any) -> Any:

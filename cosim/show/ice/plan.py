@@ -8,6 +8,7 @@ import numpy as np
 
 from cosim.recording import shapes
 from cosim.recording.pictures import Picture
+from cosim.show.ice.frame import set_frame
 from cosim.show.ice.history import Look
 from cosim.show.ice.palette import AGE, BLOCK, CRACK, EDGE, FORCE, SHALLOW, STRUCTURE, WATER, colormap
 from cosim.show.ice.scene import Scene
@@ -56,8 +57,8 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, fill: boo
     for shown, label in ((cells, "utilisation (fails at 1)"), (lost, "time of failure [s]")):
         if shown is not None and not (fill and shown is cells):  # filled axes stand beside a picture with that bar
             _bar(ax, shown, label)
-    ax.set(xlim=frame[:2], ylim=frame[2:], xlabel="x [m], the ice drifts to the right", ylabel="y [m]")
-    ax.set_aspect("equal", adjustable="datalim" if fill else "box")
+    ax.set(xlabel="x [m], the ice drifts to the right", ylabel="y [m]")
+    set_frame(ax, frame, fill)
     grey = "; grey: cracked, darker as cracks are deeper" if len(cracked_cells(picture)[0]) else ""
     ax.set_title(f"from above at {picture.t_ns / NS:.2f} s{grey}", fontsize=9)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cosim.recording.pictures import BlockShapes, Picture
+from cosim.show.ice.frame import set_frame
 from cosim.show.ice.palette import BLOCK, EDGE, FORCE, HATCH, ICE, STRUCTURE, WATER, WATERLINE
 from cosim.show.ice.scene import Scene
 from cosim.show.scale import scale_of
@@ -39,8 +40,8 @@ def draw_section(ax: Axes, scene: Scene, picture: Picture, y: float, fill: bool 
         corners = blocks.outline[blocks.offset[k] : blocks.offset[k + 1]]
         ax.add_patch(Polygon(corners, closed=True, fc=BLOCK[phase], hatch=HATCH[phase], ec=EDGE, lw=0.6, zorder=5))
     _draw_forces(ax, picture, scene, key)
-    ax.set(xlim=frame[:2], ylim=frame[2:], xlabel="x [m]", ylabel="z [m]")
-    ax.set_aspect("equal", adjustable="datalim" if fill else "box")
+    ax.set(xlabel="x [m]", ylabel="z [m]")
+    set_frame(ax, frame, fill)
     ax.set_title(f"section y = {y:.3g} m at {picture.t_ns / NS:.2f} s", fontsize=9)
 
 
