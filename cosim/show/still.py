@@ -19,6 +19,7 @@ from cosim.recording.pictures import Picture
 from cosim.recording.reader import recorded_pictures, recorded_structure
 from cosim.show.figures import draw_loads
 from cosim.show.ice.history import Failures, Look, busiest
+from cosim.show.ice.palette import colormap
 from cosim.show.ice.plan import draw_plan
 from cosim.show.ice.scene import scene_of
 from cosim.show.ice.section import draw_section
@@ -27,6 +28,7 @@ from cosim.show.view3d import View
 from coupling.interface import NS, Array
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SIZE, DOTS = (16.0, 9.0), 100  #: of a picture [inch], and in an inch
@@ -68,6 +70,7 @@ class Stills:
         ax.imshow(self._view.draw(look.picture), aspect="auto", interpolation="antialiased")
         ax.axis("off")
         about = f"{self._run.metadata['title']}\n{look.picture.t_ns / NS:.2f} s{_load(look.picture)}"
+        _bar(ax)
         box = {"fc": "w", "ec": "none", "alpha": 0.75, "pad": 6}
         ax.text(0.02, 0.975, about, transform=ax.transAxes, va="top", fontsize=14, parse_math=False, bbox=box)
         top, middle, low = right.subfigures(3, 1, height_ratios=(1.15, 0.95, 1.1))
@@ -86,6 +89,21 @@ class Stills:
     def close(self) -> None:
         """Let go of the window."""
         self._view.close()
+
+
+def _bar(ax: Axes) -> None:
+    """What the colours of the sheet mean."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.patches import Rectangle
+
+    back = Rectangle((0.01, 0.01), 0.36, 0.088, transform=ax.transAxes, fc="w", ec="none", alpha=0.75)
+    ax.add_patch(back)
+    bar = ax.figure.colorbar(
+        ScalarMappable(cmap=colormap()), cax=ax.inset_axes((0.03, 0.045, 0.32, 0.018)), orientation="horizontal"
+    )
+    bar.set_ticks([0.0, 0.5, 1.0])
+    bar.ax.set_title("utilisation of the sheet (fails at 1)", fontsize=9, pad=3.0)
+    bar.ax.tick_params(labelsize=9, pad=2.0)
 
 
 def _load(picture: Picture) -> str:

@@ -20,16 +20,7 @@ from coupling.interface import Array, IntArray, Phase
 
 WATER_RGB, SKY, DEEP = "#5b93b5", "#f4f8fb", "#c9dbe6"
 SIDE_VIEW = (-0.74, -0.78, 0.42)  #: from which the camera looks, of its distance
-BAR = {
-    "title": "utilisation (fails at 1)",
-    "n_labels": 3,
-    "fmt": "%.1f",
-    "color": EDGE,
-    "title_font_size": 18,
-    "label_font_size": 16,
-    **{"position_x": 0.03, "position_y": 0.03, "width": 0.32, "height": 0.07},
-}
-AIM = 0.25  #: behind the face, to which it looks, in half widths of what it frames
+AIM = 0.25  #: behind the face, to which it looks, in half widths of what it frames; before a slope that does not end
 FAR = 4.8  #: distance of the camera in half widths of what it frames
 
 
@@ -76,7 +67,8 @@ class View:
 
     def _camera(self) -> None:
         front = float(np.nan_to_num(self._scene.structure.face_x(0.0, 0.0)))
-        target = np.array([front + AIM * self.reach, 0.0, 0.0])
+        aim = AIM if np.isfinite(self._scene.structure.half_width) else -AIM
+        target = np.array([front + aim * self.reach, 0.0, 0.0])
         self._plotter.camera.position = tuple(target + FAR * self.reach * np.array(SIDE_VIEW))
         self._plotter.camera.focal_point = tuple(target)
         self._plotter.camera.up = (0.0, 0.0, 1.0)
@@ -118,10 +110,10 @@ class View:
             "scalars": "utilisation",
             "cmap": colormap(),
             "clim": (0.0, 1.0),
+            "show_scalar_bar": False,
             "ambient": 0.35,
             "diffuse": 0.75,
         }
-        look["scalar_bar_args"] = BAR
         self._add("sheet", grid, **look)
         quads, depth = cracked_cells(picture)
         if len(quads):

@@ -46,7 +46,7 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, fill: boo
     above = 6.0 if scene.structure.faces_down else 1.2  # ice rides up on a face that looks up
     if len(outline) == 2:  # a slope that does not end
         far = outline[::-1] + np.array([1e3 * scene.thickness, 0.0])
-        outline = np.concatenate((outline, far))
+        outline = np.concatenate((outline, far)) * np.array([1.0, 10.0])
     structure = ax.add_patch(Polygon(outline, closed=True, fc=STRUCTURE, ec=EDGE, lw=0.8, zorder=above))
     hidden = LineCollection([np.concatenate((c, c[:1])) for c in corners], colors=colours, lw=0.9, ls=(0, (2, 1.5)))
     hidden.set_zorder(above + 0.05)  # what lies below the structure
@@ -156,5 +156,5 @@ def _draw_forces(ax: Axes, scene: Scene, picture: Picture) -> None:
     style: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "width": 0.003, "color": FORCE, "zorder": 8}
     ax.quiver(*forces.position[:, :2].T, *forces.force[:, :2].T, scale=largest / (4.0 * scene.thickness), **style)
     text = f"longest arrow {scale_of((largest,), 'N').labelled(largest)}"
-    box = {"fc": "w", "ec": "none", "alpha": 0.7, "pad": 1.5}
+    box = {"fc": "w", "ec": "none", "alpha": 0.9, "pad": 1.5}
     ax.text(0.98, 0.03, text, transform=ax.transAxes, ha="right", fontsize=7, color=FORCE, zorder=9, bbox=box)

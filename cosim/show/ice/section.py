@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 AHEAD, BEHIND = 9.0, 5.0  #: thicknesses that are shown in front of the face and behind it
 FAR = 1000.0  #: thicknesses down to which there is water
+#: look of a plate of another section that reaches into this one: pale, and not before the structure, as its outline is
+#: that at its middle
+REACHES: dict[str, Any] = {"alpha": 0.45, "ec": EDGE, "ls": (0, (3, 2)), "lw": 0.6, "zorder": 2.0}
 ARROW = 3.0  #: length of the largest force, in thicknesses
 
 
@@ -36,9 +39,10 @@ def draw_section(ax: Axes, scene: Scene, picture: Picture, y: float, fill: bool 
         ax.add_patch(Polygon(corners, closed=True, fc=ICE, ec=EDGE, lw=0.35, zorder=4))
     blocks = picture.blocks
     for k in cut_blocks(blocks, y):
-        phase = Phase(int(blocks.phase[k]))
+        phase, mine = Phase(int(blocks.phase[k])), int(blocks.section[k]) == key
         corners = blocks.outline[blocks.offset[k] : blocks.offset[k + 1]]
-        ax.add_patch(Polygon(corners, closed=True, fc=BLOCK[phase], hatch=HATCH[phase], ec=EDGE, lw=0.6, zorder=5))
+        look = {"hatch": HATCH[phase], "ec": EDGE, "lw": 0.6, "zorder": 5.0} if mine else REACHES
+        ax.add_patch(Polygon(corners, closed=True, fc=BLOCK[phase], **look))
     _draw_forces(ax, picture, scene, key)
     ax.set(xlabel="x [m]", ylabel="z [m]")
     set_frame(ax, frame, fill)
@@ -55,7 +59,10 @@ def extent(scene: Scene, y: float) -> tuple[float, float, float, float]:
 
 
 def cut_blocks(blocks: BlockShapes, y: float) -> IntArray:
-    """Numbers of the blocks that a section cuts: a plate lies in all sections that it is wide enough to reach."""
+    """Numbers of the blocks that a section cuts: a plate lies in all sections that it is wide enough to reach.
+
+    What is recorded of it is the outline in the section of its middle.
+    """
     return np.flatnonzero(np.abs(blocks.position[:, 1] - y) <= 0.5 * blocks.width)
 
 
@@ -83,7 +90,7 @@ def _draw_forces(ax: Axes, picture: Picture, scene: Scene, key: int) -> None:
     if largest == 0.0:
         return
     text = f"longest arrow of all sections {scale_of((largest,), 'N').labelled(largest)}"
-    box = {"fc": "w", "ec": "none", "alpha": 0.7, "pad": 1.5}
+    box = {"fc": "w", "ec": "none", "alpha": 0.9, "pad": 1.5}
     ax.text(0.02, 0.03, text, transform=ax.transAxes, fontsize=7, color=FORCE, zorder=9, bbox=box)
     near = np.abs(forces.position[:, 1] - scene.centre(key)) <= 0.5 * scene.pitch * (1 + 1e-6)
     for place, force in zip(forces.position[near], forces.force[near], strict=True):

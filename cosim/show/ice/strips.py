@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosim.recording import shapes
-from cosim.recording.pictures import Picture
+from cosim.recording.pictures import BlockShapes, Picture
 from cosim.show.ice.plan import cracked_cells
 from cosim.show.ice.scene import Scene
 from cosim.show.ice.section import cut_blocks, sheet_parts
@@ -59,9 +59,15 @@ def _section(scene: Scene, picture: Picture, section: int) -> list[Strips]:
     arrows = [np.array([forces.position[k, [0, 2]], ends[k]]) * DOWN for k in np.flatnonzero(near)]
     return [
         Strips("section/sheet", ice, [ICE_RGB] * len(ice), 1.5),
-        Strips("section/rubble", blocks, [shapes.PHASE_RGB[Phase(int(b.phase[k]))] for k in mine], 2.0),
+        Strips("section/rubble", blocks, [_block_rgb(b, k, section) for k in mine], 2.0),
         Strips("section/forces", arrows, [FORCE_RGB] * len(arrows), 2.5),
     ]
+
+
+def _block_rgb(blocks: BlockShapes, k: int, section: int) -> tuple[int, int, int]:
+    """By phase; half as bright for a plate of another section that reaches into this one."""
+    rgb = shapes.PHASE_RGB[Phase(int(blocks.phase[k]))]
+    return rgb if blocks.section[k] == section else (rgb[0] // 2, rgb[1] // 2, rgb[2] // 2)
 
 
 def _plan(picture: Picture) -> list[Strips]:
