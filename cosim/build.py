@@ -17,6 +17,7 @@ from cosim.observer import RunInfo
 from cosim.scenario.ice import STRENGTHS
 from cosim.scenario.scenario import Scenario
 from cosim.scenario.variation import FIELDS
+from cosim.strained import Strained
 from cosim.structures import KINDS
 from coupling.contact import CONTACTS, ContactLaw
 from coupling.interface import NS, BoolArray, Motion, RubbleParticipant, Structure
@@ -210,8 +211,8 @@ def build_measured(scenario: Scenario) -> Measured:
     return Measured(f.fracture_energy, f.crack_friction, beam, concentration, f.layer_strength)
 
 
-def run_info(scenario: Scenario) -> RunInfo:
-    """What stays constant over a run, for observers."""
+def run_info(scenario: Scenario, scheduler: Scheduler | None = None) -> RunInfo:
+    """What stays constant over a run, for observers; of a run that is built they can ask for stresses."""
     s = scenario.sheet
     mesh = build_structure(scenario).mesh(2.0 * s.width)
     return RunInfo(
@@ -221,4 +222,5 @@ def run_info(scenario: Scenario) -> RunInfo:
         s.spacing,
         scenario.duration_ns,
         scenario.window_ns,
+        None if scheduler is None else Strained.of(scheduler),
     )

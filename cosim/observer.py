@@ -6,10 +6,13 @@ A run calls ``on_start`` once, ``on_frame`` after every time window and ``on_clo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Array, Frame, IntArray
+
+if TYPE_CHECKING:
+    from cosim.strained import Strained
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +25,7 @@ class RunInfo:
     d: float  #: distance of the nodes [m]
     duration_ns: int
     window_ns: int
+    strained: Strained | None = None  #: stresses of the cells of the running sheet; None: they are not known
 
     @property
     def thickness(self) -> float:

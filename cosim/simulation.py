@@ -184,7 +184,7 @@ def run_scenario(
     with threadpool_limits(1):  # linear algebra adds in the same order on every machine: same scenario, same bits
         began = time.perf_counter()
         scheduler = build(scenario, begins=checkpoints.kept is None)
-        info = run_info(scenario)
+        info = run_info(scenario, scheduler)
         if seen := checkpoints.begin(info, scheduler):
             result.go_on(seen)
         began -= result.wall_s

@@ -212,7 +212,7 @@ def report(
     settings: SeriesSetOption = None,
 ) -> None:
     """One HTML page of a recording: loads by phase, balances, events, numbers beside reference and series."""
-    from cosim.recording.reader import recorded_pictures
+    from cosim.recording.reader import recorded_pictures, recorded_stresses
     from cosim.series.compare import files
     from cosim.show.console import print_line
     from cosim.show.opening import opened
@@ -223,5 +223,5 @@ def report(
     run = opened(recording)
     measured = None if series is None else files(series, [run], settings or ())[0]
     with whole(output, ".html") as part:
-        write_report(run, part, measured, recorded_pictures(recording))
+        write_report(run, part, measured, recorded_pictures(recording), recorded_stresses(recording))
     print_line(f"{output}: written")

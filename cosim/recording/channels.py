@@ -19,7 +19,7 @@ from foxglove_schemas_protobuf.Log_pb2 import Log
 from foxglove_schemas_protobuf.PointCloud_pb2 import PointCloud
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 
-from cosim.recording import messages, numbers, pictures, views
+from cosim.recording import messages, numbers, pictures, stresses, views
 
 
 class When(Enum):
@@ -80,6 +80,16 @@ CHANNELS: dict[str, Channel] = {
         When.WINDOW,
         numbers.motion,
         "of a structure that moves: `surge` to `yaw` [m], [rad], and `surge_rate` to `yaw_rate`",
+    ),
+    stresses.BEGAN: Channel(
+        messages.Stresses,
+        When.WINDOW,
+        stresses.began,
+        "stresses at which cells began to crack or failed: mean and half the difference of the principal ones, "
+        "limit [Pa]",
+    ),
+    stresses.WORST: Channel(
+        messages.Stresses, When.PICTURE, stresses.worst, "the same of the 24 cells that are used most"
     ),
 }
 

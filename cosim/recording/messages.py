@@ -18,8 +18,18 @@ LOAD_FIELDS = (*AXES, *(f"{phase}_{axis}" for phase in PHASES for axis in AXES))
 MOMENT_FIELDS = (*MOMENT_AXES, *(f"{phase}_{axis}" for phase in PHASES for axis in MOMENT_AXES))  #: [N m]; likewise
 #: sum of the magnitudes of the forces [N], and of each times its place [N m]; point of attack [m], nan without a load
 GRIP_FIELDS = ("weight", "weight_x", "weight_y", "weight_z", "attack_x", "attack_y", "attack_z")
-NAMES = ("Load", "Event", "Ledger", "Contact", "Sheet", "Blocks")
-SHEET_BYTES = ("dx", "dy", "z", "damage", "utilisation", "present", "intact")  #: see `cosim.recording.planes`
+NAMES = ("Load", "Event", "Ledger", "Contact", "Sheet", "Blocks", "Stresses")
+#: packed as `cosim.recording.planes` does it
+SHEET_BYTES = (
+    "dx",
+    "dy",
+    "z",
+    "damage",
+    "utilisation",
+    "present",
+    "intact",
+    "elastic",
+)  #: see `cosim.recording.planes`
 BLOCKS_BYTES = ("id", "section", "phase", "corners", "x", "y", "z", "width", "corner_x", "corner_z")
 
 _Field = descriptor_pb2.FieldDescriptorProto
@@ -71,14 +81,24 @@ def _build() -> dict[str, Any]:
         *((name, number) for name in ("quantum", "x", "y", "step_x", "step_y")),
     ]
     _message(file, "Sheet", [*grid, *((name, raw) for name in SHEET_BYTES)])
+    _stresses(file)
     _message(file, "Blocks", [("quantum", number), *((name, raw) for name in BLOCKS_BYTES)])
     pool = descriptor_pool.Default()
     pool.Add(file)
     return {name: message_factory.GetMessageClass(pool.FindMessageTypeByName(f"cosim.{name}")) for name in NAMES}
 
 
+def _stresses(file: Any) -> None:
+    """Lines of the criteria (`cosim.stresses.Line`), then cells."""
+    single, count = _Field.TYPE_FLOAT, _Field.TYPE_UINT32
+    fields = [("name", _Field.TYPE_STRING)]
+    fields += [(name, _Field.TYPE_DOUBLE) for name in ("along_mean", "along_radius", "strength")]
+    fields += [("cell", count), ("criterion", count), *((name, single) for name in ("mean", "radius", "limit"))]
+    _message(file, "Stresses", fields, repeated=tuple(name for name, _ in fields))
+
+
 _classes = _build()
-Load, Event, Ledger, Contact, Sheet, Blocks = (_classes[name] for name in NAMES)
+Load, Event, Ledger, Contact, Sheet, Blocks, Stresses = (_classes[name] for name in NAMES)
 
 
 def stamp(message: Any, t_ns: int) -> None:

@@ -24,7 +24,7 @@ from cosim.recording.planes import (
     unpack_numbers,
 )
 from coupling.attack import PointForces, point_forces
-from coupling.interface import Array, Frame, IntArray, SheetView
+from coupling.interface import Array, BoolArray, Frame, IntArray, SheetView
 
 SHEET, BLOCKS, CONTACT = "/ice/sheet", "/rubble/blocks", "/load/contact"
 TOPICS = (SHEET, BLOCKS, CONTACT)
@@ -58,6 +58,13 @@ class Picture:
     sheet: SheetView
     blocks: BlockShapes
     forces: PointForces
+    elastic: BoolArray | None = None  #: (c,) cells that have not begun to crack; None: unknown
+
+    @property
+    def begun(self) -> BoolArray:
+        """(c,) cells that have begun to crack and still hold their nodes together; none where that is unknown."""
+        intact = self.sheet.intact
+        return np.zeros(len(intact), bool) if self.elastic is None else intact & ~self.elastic
 
 
 def quantum_of(thickness: float) -> float:
@@ -80,6 +87,7 @@ def sheet(info: RunInfo, frame: Frame) -> bytes:
         utilisation=pack_numbers(strain, SHARE),
         present=pack_bits(here),
         intact=pack_bits(view.intact),
+        elastic=b"" if info.strained is None else pack_bits(info.strained.elastic),
         **dict(zip(("x", "y", "step_x", "step_y"), (*first, *step), strict=True)),
         **{name: pack_numbers(away[:, k], quantum) for k, name in enumerate(("dx", "dy", "z"))},
     )
@@ -123,12 +131,15 @@ def contact(info: RunInfo, frame: Frame) -> bytes:
 def pictures(stored: Iterable[tuple[str, int, bytes]]) -> Iterator[Picture]:
     """The pictures of a recording, of its messages of `TOPICS`, in order. ValueError: they do not fit together."""
     parts: dict[str, Any] = {}
+    elastic: BoolArray | None = None
     for topic, t_ns, data in stored:
         parts[topic] = READ[topic](data)
+        if topic == SHEET:
+            elastic = _elastic(data, len(parts[SHEET].intact))
         if topic == TOPICS[-1]:  # written last
             if set(parts) != set(TOPICS):
                 raise ValueError(f"the picture at {t_ns / 1e9:g} s is not whole")
-            yield Picture(t_ns, parts[SHEET], parts[BLOCKS], parts[CONTACT])
+            yield Picture(t_ns, parts[SHEET], parts[BLOCKS], parts[CONTACT], elastic)
             parts = {}
 
 
@@ -145,6 +156,11 @@ def _read_sheet(data: bytes) -> SheetView:
         raise ValueError(f"a sheet of {len(place)} nodes with places of {len(away)}")
     present, intact = unpack_bits(m.present, len(place)), unpack_bits(m.intact, cells[0] * cells[1])
     return SheetView(place + away, damage, utilisation, present, intact, shape, cells)
+
+
+def _elastic(data: bytes, cells: int) -> BoolArray | None:
+    packed = messages.Sheet.FromString(data).elastic
+    return unpack_bits(packed, cells) if packed else None
 
 
 def _read_blocks(data: bytes) -> BlockShapes:

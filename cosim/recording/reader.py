@@ -19,6 +19,8 @@ from cosim.recording.decoding import DATA_TOPICS, Stored, decode
 from cosim.recording.pictures import READ, SHEET, TOPICS, Picture, pictures
 from cosim.recording.records import DamageError, RecordingError, Records
 from cosim.recording.scenes import triangles_of
+from cosim.recording.stresses import BEGAN, WORST, gathered, unpacked
+from cosim.stresses import Stresses
 from coupling.interface import Array, IntArray, SheetView
 
 T = TypeVar("T")
@@ -62,6 +64,18 @@ def recorded_structure(path: str | Path) -> tuple[Array, IntArray]:
     if found is None:
         raise RecordingError(f"{path}: no structure is recorded; give a file that `cosim run` wrote")
     return found
+
+
+def recorded_stresses(path: str | Path) -> tuple[Stresses | None, Stresses | None]:
+    """Stresses at which cells began to crack, and those of the most used cells of all recorded frames.
+
+    None where none are recorded; RecordingError if they cannot be read.
+    """
+    found: dict[str, list[Stresses]] = {BEGAN: [], WORST: []}
+    for topic, part in _read(Path(path), ((t, unpacked(data)) for t, _, data in messages(path, tuple(found)))):
+        found[topic].append(part)
+    began, worst = _read(Path(path), map(gathered, found.values()))
+    return began, worst
 
 
 def _read(path: Path, items: Iterator[T]) -> Iterator[T]:

@@ -58,12 +58,5 @@ def _focus(ax: Axes, terms: Array, total: Array) -> None:
     out = np.mean((up > high) | (down < low))
     ax.set_ylim(low, high)
     if out > 0.0:
-        ax.text(
-            0.995,
-            0.03,
-            f"stacks of {out:.1%} of the windows end outside",
-            transform=ax.transAxes,
-            ha="right",
-            fontsize=7,
-        )
+        ax.set_title(f"stacks of {out:.1%} of the windows end outside", loc="right", fontsize=7, pad=2.0)
     ax.grid(alpha=0.3)

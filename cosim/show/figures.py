@@ -55,6 +55,11 @@ ENERGY = {
     "ice that left": ("#c9c24f", ("crushed_energy_loss", "cleared_energy_loss")),
     "interface, step, overlap": ("#d45087", ("interface_loss", "stepping_loss", "correction_loss")),
 }
+LOST: tuple[dict[str, Any], ...] = (
+    {"color": "#0072b2", "lw": 1.6},
+    {"color": "#d55e00", "lw": 1.6, "ls": (0, (5, 2))},
+    {"color": "#1d2733", "lw": 1.6, "ls": (0, (1, 1.5))},
+)
 ICE = ("sheet_mass", "rubble_mass", "crushed_mass", "cleared_mass")
 
 
@@ -92,8 +97,8 @@ def draw_mass(figure: Figure, run: RunData) -> None:
     ax = figure.subplots()
     drawn = [name for name in ICE[1:] if name in run.ledger]
     scale = scale_of((np.nanmax(run.ledger[name]) for name in drawn), "kg")
-    for name in drawn:
-        ax.plot(run.t, run.ledger[name] / scale.size, label=name.removesuffix("_mass"))
+    for name, look in zip(drawn, LOST, strict=False):
+        ax.plot(run.t, run.ledger[name] / scale.size, label=name.removesuffix("_mass"), **look)
     ax.set(xlabel="time [s]", ylabel=f"mass [{scale.unit}]", xlim=(0.0, run.t[-1]))
     ax.legend()
     ax.grid(alpha=0.3)
@@ -119,7 +124,7 @@ def draw_energy(figure: Figure, run: RunData) -> None:
         label="work of the drift" + ", of loads" * bool(loads) + ", of the structure" * (MOVING in run.ledger),
     )
     ax.axhline(0.0, color="k", lw=0.6)
-    ax.text(0.01, 0.04, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8)
+    ax.text(0.01, 0.96, "below zero: energy put in beside the drift", transform=ax.transAxes, fontsize=8, va="top")
     ax.set(ylabel=f"energy [{scale.unit}]", xlim=(0.0, run.t[-1]))
     figure.legend(*ax.get_legend_handles_labels(), fontsize=8, loc="outside right upper")
     largest = np.maximum.accumulate(np.maximum(np.abs(work), 1e-6))

@@ -13,6 +13,7 @@ from cosim.show.ice.scene import Scene
 from coupling.interface import Array, IntArray, Phase, SheetView
 
 TOWER_RGB, WATER_RGBA = (240, 240, 236), (70, 130, 170, 90)
+SHALLOW = 0.3  #: damage as which a cell is coloured that has begun to crack
 DRAWN = (Phase.ROTATING, Phase.SLIDING)  #: phases of blocks
 
 
@@ -30,7 +31,7 @@ class Mesh:
 
 def meshes(picture: Picture, thickness: float) -> Iterator[Mesh]:
     """The sheet, then the blocks by phase."""
-    yield sheet_mesh(picture.t_ns, picture.sheet, thickness)
+    yield sheet_mesh(picture, thickness)
     points, faces, owner = shapes.prisms(picture.blocks)
     for phase in DRAWN:
         used, compact = np.unique(faces[picture.blocks.phase[owner] == phase], return_inverse=True)
@@ -77,12 +78,23 @@ def quads_of(sheet: SheetView) -> IntArray:
     return shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
 
 
-def sheet_mesh(t_ns: int, sheet: SheetView, thickness: float) -> Mesh:
+def sheet_mesh(picture: Picture, thickness: float) -> Mesh:
     """The intact cells as a solid."""
+    sheet = picture.sheet
     n = len(sheet.position)
     vertices, faces, node = shapes.solid_sheet(sheet.position, quads_of(sheet), thickness)
-    rgb = shapes.ice_colour(sheet.damage, sheet.utilisation)[node]
-    return Mesh("sheet", t_ns, vertices, faces, _sheet_normals(vertices, n), _shade(rgb, n))
+    rgb = shapes.ice_colour(cracked_at_nodes(picture), sheet.utilisation)[node]
+    return Mesh("sheet", picture.t_ns, vertices, faces, _sheet_normals(vertices, n), _shade(rgb, n))
+
+
+def cracked_at_nodes(picture: Picture) -> Array:
+    """Damage of the nodes (n,), not below `SHALLOW` of the share of their cells that have begun to crack."""
+    sheet = picture.sheet
+    begun, cells = np.zeros(len(sheet.position)), np.zeros(len(sheet.position))
+    every = shapes.cell_quads(np.ones(len(sheet.intact), bool), sheet.cell_shape)
+    np.add.at(cells, every, 1.0)
+    np.add.at(begun, every, picture.begun[:, None].astype(float))
+    return np.asarray(np.maximum(sheet.damage, SHALLOW * begun / np.maximum(cells, 1.0)))
 
 
 def flat_mesh(name: str, t_ns: int, points: Array, faces: IntArray, rgb: tuple[int, int, int]) -> Mesh:

@@ -36,7 +36,7 @@ from coupling.interface import FREEDOMS, NS, PHASES, Array, Event, Phase
 from coupling.structure.moved import turned
 
 APPLICATION = "cosim"
-TOTAL_RGB, MEASURED_RGB, DRIFT_RGB = (235, 235, 235), (250, 220, 70), (120, 200, 255)
+TOTAL_RGB, MEASURED_RGB, DRIFT_RGB = (140, 150, 165), (204, 121, 167), (120, 200, 255)
 Measured = Callable[[RunData], Series] | None  #: gives a measured series in the time of a run
 #: of the load: entity, name, phase, colour; drawn in the order of their entities, the total first: it hides no phase
 CURVES = (("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES)))

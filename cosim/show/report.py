@@ -27,6 +27,7 @@ from cosim.show.figures import FIGURES, has_data
 from cosim.show.ice.figures import draw_look, draw_waterline
 from cosim.show.ice.history import looks
 from cosim.show.ice.scene import scene_of
+from cosim.show.mohr import Recorded, mohr_picture
 from cosim.show.page.numbers import balances, budget_table, curve_data, moment_table, statistics
 from cosim.show.page.parameters import parameters
 from cosim.show.png import picture
@@ -34,23 +35,32 @@ from cosim.show.scale import scale_of
 from cosim.show.series_tables import page_parts
 from coupling.interface import NS
 
-CONTENTS = ("answer", "ice", "curves", "statistics", "moments", "budget", "formulas", "events", "parameters")
+CONTENTS = (
+    *("answer", "ice", "curves", "stresses", "statistics", "moments", "budget", "formulas", "events", "parameters"),
+)
 
 
 def write_report(
-    run: RunData, out: Path, series: Comparison | None = None, pictures: Iterable[Picture] | None = None
+    run: RunData,
+    out: Path,
+    series: Comparison | None = None,
+    pictures: Iterable[Picture] | None = None,
+    stresses: Recorded = (None, None),
 ) -> None:
-    """Writes the page, also of a measured series beside the run, and of recorded pictures; all is inside it."""
+    """Writes the page, also of a measured series beside the run, of recorded pictures and stresses; all is inside."""
     template = files("cosim.show").joinpath("report.html.j2").read_text("utf-8")
     environment = jinja2.Environment(
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    page = environment.from_string(template).render(content(run, series, pictures))
+    page = environment.from_string(template).render(content(run, series, pictures, stresses))
     out.write_text(page.lstrip(), "utf-8")
 
 
 def content(
-    run: RunData, series: Comparison | None = None, pictures: Iterable[Picture] | None = None
+    run: RunData,
+    series: Comparison | None = None,
+    pictures: Iterable[Picture] | None = None,
+    stresses: Recorded = (None, None),
 ) -> dict[str, Any]:
     """What the page shows, ready for its template."""
     design = beside(run)
@@ -66,6 +76,7 @@ def content(
         **_beside_reference(run),
         "ice": [] if pictures is None else _ice(run, list(pictures)),
         "figures": [picture(title, draw, run) for title, draw in FIGURES.items() if has_data(title, run)],
+        "stresses": mohr_picture(*stresses),
         "shares": shares,
         "statistics": statistics(run),
         "moments": moment_table(run),

@@ -9,7 +9,7 @@ from cosim.analysis.run_data import RunData
 from cosim.analysis.summary import summary
 from cosim.show.cells import over_text
 from cosim.show.curves import draw_curves
-from cosim.show.png import picture
+from cosim.show.png import embedded
 from cosim.show.scale import scale_of, seconds
 from coupling.interface import PHASES
 
@@ -47,5 +47,5 @@ def run_html(run: RunData) -> str:
         rows=rows,
         components=COMPONENTS,
         trust=trust_lines(trust(run)),
-        png=picture("curves", draw_curves, run)["png"],
+        png=embedded(draw_curves, run),
     )

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 STEPS: dict[str, tuple[tuple[float, str], ...]] = {
     "N": ((1e6, "MN"), (1e3, "kN"), (1.0, "N"), (1e-3, "mN")),
     "N m": ((1e6, "MN m"), (1e3, "kN m"), (1.0, "N m"), (1e-3, "mN m")),
+    "Pa": ((1e6, "MPa"), (1e3, "kPa"), (1.0, "Pa")),
     "m": ((1.0, "m"), (1e-3, "mm")),
     "J": ((1e6, "MJ"), (1e3, "kJ"), (1.0, "J"), (1e-3, "mJ")),
     "kg": ((1e6, "1000 t"), (1e3, "t"), (1.0, "kg"), (1e-3, "g")),

@@ -19,13 +19,16 @@ from cosim.recording.pictures import Picture
 from cosim.recording.reader import recorded_pictures, recorded_structure
 from cosim.show.figures import draw_loads
 from cosim.show.ice.history import Failures, Look, busiest
+from cosim.show.ice.palette import colormap
 from cosim.show.ice.plan import draw_plan
 from cosim.show.ice.scene import scene_of
 from cosim.show.ice.section import draw_section
+from cosim.show.scale import scale_of
 from cosim.show.view3d import View
 from coupling.interface import NS, Array
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SIZE, DOTS = (16.0, 9.0), 100  #: of a picture [inch], and in an inch
@@ -66,24 +69,47 @@ class Stills:
         ax = left.add_axes((0.0, 0.0, 1.0, 1.0))
         ax.imshow(self._view.draw(look.picture), aspect="auto", interpolation="antialiased")
         ax.axis("off")
-        about = f"{self._run.metadata['title']}\n{look.picture.t_ns / NS:.2f} s"
+        about = f"{self._run.metadata['title']}\n{look.picture.t_ns / NS:.2f} s{_load(look.picture)}"
+        _bar(ax)
         box = {"fc": "w", "ec": "none", "alpha": 0.75, "pad": 6}
         ax.text(0.02, 0.975, about, transform=ax.transAxes, va="top", fontsize=14, parse_math=False, bbox=box)
         top, middle, low = right.subfigures(3, 1, height_ratios=(1.15, 0.95, 1.1))
-        draw_plan(_one(top), self._scene, look, bars=False)
-        draw_section(_one(middle), self._scene, look.picture, look.section)
+        draw_plan(_one(top), self._scene, look, fill=True)
+        draw_section(_one(middle), self._scene, look.picture, look.section, fill=True)
         low.subplots_adjust(left=0.12, right=0.97, top=0.9, bottom=0.17, hspace=0.12)
         draw_loads(low, self._run)
         for axes in low.axes:
             axes.axvline(look.picture.t_ns / NS, color="#c0185a", lw=1.4)
         found = trust(self._run)
+        text, colour = "\u2713 within the limits of all lights", "#0072b2"
         if not found["trustworthy"]:
-            text = "not trustworthy: " + "; ".join(found["because"])
-            ax.text(0.02, 0.12, text, transform=ax.transAxes, fontsize=9, color="#b03a2e", wrap=True, bbox=box)
+            text, colour = "\u2717 not trustworthy: " + "; ".join(found["because"]), "#b03a2e"
+        ax.text(0.02, 0.12, text, transform=ax.transAxes, fontsize=9, color=colour, wrap=True, bbox=box)
 
     def close(self) -> None:
         """Let go of the window."""
         self._view.close()
+
+
+def _bar(ax: Axes) -> None:
+    """What the colours of the sheet mean."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.patches import Rectangle
+
+    back = Rectangle((0.01, 0.01), 0.36, 0.088, transform=ax.transAxes, fc="w", ec="none", alpha=0.75)
+    ax.add_patch(back)
+    bar = ax.figure.colorbar(
+        ScalarMappable(cmap=colormap()), cax=ax.inset_axes((0.03, 0.045, 0.32, 0.018)), orientation="horizontal"
+    )
+    bar.set_ticks([0.0, 0.5, 1.0])
+    bar.ax.set_title("utilisation of the sheet (fails at 1)", fontsize=9, pad=3.0)
+    bar.ax.tick_params(labelsize=9, pad=2.0)
+
+
+def _load(picture: Picture) -> str:
+    """The force that the arrow shows."""
+    size = float(np.linalg.norm(picture.forces.force.sum(axis=0))) if len(picture.forces.force) else 0.0
+    return f"; arrow: load {scale_of((size,), 'N').labelled(size)} in this window" if size else "; no load"
 
 
 def _split(figure: Any) -> Any:

@@ -13,23 +13,15 @@ import numpy as np
 
 from cosim.export.vtk import blocks_surface, sheet_grid, triangle_surface
 from cosim.recording.pictures import Picture
-from cosim.show.ice.palette import BLOCK, CRACK, EDGE, FORCE, STRUCTURE, colormap
+from cosim.show.ice.palette import BLOCK, CRACK, EDGE, FORCE, SHALLOW, STRUCTURE, colormap
 from cosim.show.ice.plan import cracked_cells
 from cosim.show.ice.scene import Scene
 from coupling.interface import Array, IntArray, Phase
 
 WATER_RGB, SKY, DEEP = "#5b93b5", "#f4f8fb", "#c9dbe6"
 SIDE_VIEW = (-0.74, -0.78, 0.42)  #: from which the camera looks, of its distance
-BAR = {
-    "title": "utilisation (fails at 1)",
-    "n_labels": 3,
-    "fmt": "%.1f",
-    "color": EDGE,
-    "title_font_size": 18,
-    "label_font_size": 16,
-    **{"position_x": 0.03, "position_y": 0.03, "width": 0.32, "height": 0.07},
-}
-FAR = 4.3  #: distance of the camera in half widths of what it frames
+AIM = 0.25  #: behind the face, to which it looks, in half widths of what it frames; before a slope that does not end
+FAR = 4.8  #: distance of the camera in half widths of what it frames
 
 
 class View:
@@ -69,13 +61,14 @@ class View:
     def _radius(self, points: Array) -> float:
         """Of the structure where it is seen; of a slope without an end that of a cone of the usual size."""
         if not np.isfinite(self._scene.structure.half_width):
-            return 8.0 * self._scene.thickness
+            return max(8.0 * self._scene.thickness, 0.7 * min(self._scene.width, 30.0 * self._scene.thickness))
         seen = points[points[:, 2] > -2.0 * self._scene.thickness]
         return float(np.hypot(seen[:, 0], seen[:, 1]).max())
 
     def _camera(self) -> None:
         front = float(np.nan_to_num(self._scene.structure.face_x(0.0, 0.0)))
-        target = np.array([front - 0.35 * self.reach, 0.0, 0.0])
+        aim = AIM if np.isfinite(self._scene.structure.half_width) else -AIM
+        target = np.array([front + aim * self.reach, 0.0, 0.0])
         self._plotter.camera.position = tuple(target + FAR * self.reach * np.array(SIDE_VIEW))
         self._plotter.camera.focal_point = tuple(target)
         self._plotter.camera.up = (0.0, 0.0, 1.0)
@@ -117,18 +110,18 @@ class View:
             "scalars": "utilisation",
             "cmap": colormap(),
             "clim": (0.0, 1.0),
+            "show_scalar_bar": False,
             "ambient": 0.35,
             "diffuse": 0.75,
         }
-        look["scalar_bar_args"] = BAR
         self._add("sheet", grid, **look)
-        quads, depth = cracked_cells(picture.sheet)
+        quads, depth = cracked_cells(picture)
         if len(quads):
             top = picture.sheet.position + np.array([0.0, 0.0, 0.51 * self._scene.thickness])
             faces = np.column_stack((np.full(len(quads), 4), quads)).ravel()
             cracks = self._pv.PolyData(top, faces)
             cracks.cell_data["depth"] = depth
-            look = {"cmap": ["#8d99a6", CRACK], "clim": (0.0, 1.0), "show_scalar_bar": False, "opacity": 0.85}
+            look = {"cmap": [SHALLOW, CRACK], "clim": (0.0, 1.0), "show_scalar_bar": False, "opacity": 0.9}
             _in_front(self._add("cracks", cracks, scalars="depth", lighting=False, **look), 60.0)
         self._add("edges", grid.extract_feature_edges(40.0), color=EDGE, line_width=1.2, opacity=0.6)
 
@@ -142,7 +135,7 @@ class View:
         start = weight @ picture.forces.position / weight.sum()
         length = 1.1 * self.reach
         arrow = self._pv.Arrow(
-            start=start - total / size * length,
+            start=start,
             direction=total / size,
             scale=length,
             shaft_radius=0.02,

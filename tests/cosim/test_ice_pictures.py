@@ -52,6 +52,13 @@ def share(image, ax, colour, x, y, reach=12):
     return (np.abs(patch - np.array(ImageColor.getrgb(colour))).max(axis=2) < reach).mean()
 
 
+def below_the_structure(image, ax, look):
+    """Pixels inside of the structure that have the colour of a sliding block's outline."""
+    row, column = np.nonzero(np.abs(image - np.array(ImageColor.getrgb(BLOCK[Phase.SLIDING]))).max(axis=2) < 30)
+    place = ax.transData.inverted().transform(np.column_stack((column, image.shape[0] - row)))
+    return int((np.hypot(*place.T) < 14.0).sum())
+
+
 def test_the_looks_are_the_peaks_of_the_phases(run, seen):
     assert {"most load by breaking", "most load by rotating", "most load by sliding", "peak of the load"} <= set(seen)
     for title, look in seen.items():
@@ -63,7 +70,8 @@ def test_the_looks_are_the_peaks_of_the_phases(run, seen):
 def test_the_plan_has_ice_water_structure_and_blocks_in_their_places(run, seen):
     scene, look = scene_of(run), seen["most load by sliding"]
     image, ax = drawn(lambda ax: plan.draw_plan(ax, scene, look))
-    assert share(image, ax, STRUCTURE, 0.0, 5.0) > 0.9
+    assert share(image, ax, STRUCTURE, 0.0, 10.0) > 0.9
+    assert below_the_structure(image, ax, look) > 50  # outlines of blocks that it hides
     assert share(image, ax, WATER, 10.0, 25.0) > 0.9
     sheet, frame = look.picture.sheet, plan.extent(scene, look.picture, False)
     x, y = sheet.position[:, 0], sheet.position[:, 1]

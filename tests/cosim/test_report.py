@@ -112,7 +112,7 @@ def test_the_page_is_self_contained(run, tmp_path):
     out = tmp_path / "report.html"
     write_report(run, out)
     page = out.read_text("utf-8")
-    assert page.count("data:image/png;base64,") == 3
+    assert page.count("data:image/svg+xml;base64,") == 3
     assert "http" not in page
     assert "A &lt;case&gt;" in page
     assert "it splits" in page

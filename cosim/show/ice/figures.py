@@ -53,9 +53,10 @@ def draw_waterline(figure: Figure, scene: Scene, pictures: Sequence[Picture]) ->
     over_time, profile = figure.subplots(1, 2, sharey=True, width_ratios=(3.0, 1.0))
     scale = scale_of((float(load.max()),), "N")
     ends = np.append(t, t[-1] + (t[-1] - t[-2] if len(t) > 1 else 1.0))
-    mesh = over_time.pcolormesh(ends, edges, load.T / scale.size, cmap="magma_r", rasterized=True)
+    shown = np.ma.masked_equal(load.T, 0.0) / scale.size  # white: nothing
+    mesh = over_time.pcolormesh(ends, edges, shown, cmap="magma_r", vmin=0.0, rasterized=True)
     figure.colorbar(mesh, ax=over_time, label=f"load per width [{scale.unit}/m]", location="top", shrink=0.6)
-    over_time.set(xlabel="time [s], recorded frames", ylabel="y [m]")
+    over_time.set(xlabel="time [s], recorded frames; white: no load", ylabel="y [m]")
     middle = 0.5 * (edges[1:] + edges[:-1])
     profile.step(load.mean(axis=0) / scale.size, middle, where="mid", color="#0072b2", label="mean")
     profile.step(load.max(axis=0) / scale.size, middle, where="mid", color="#c0185a", ls="--", label="largest")

@@ -14,6 +14,7 @@ BLOCK = {Phase.BREAKING: "#0072b2", Phase.ROTATING: "#e69f00", Phase.SLIDING: "#
 HATCH = {Phase.BREAKING: "", Phase.ROTATING: "", Phase.SLIDING: "//"}
 ICE, WATER, WATERLINE = "#eef5fa", "#d3e3ee", "#4c7f9f"
 STRUCTURE, EDGE, FORCE, CRACK = "#c9b27a", "#2a3440", "#c0185a", "#14202c"
+SHALLOW = "#b7c1cc"  #: cells that have begun to crack; `CRACK`: cracked through
 UTILISATION = ("#eef5fa", "#fbd9a5", "#f0943c", "#b3202c", "#4d0a1c")  #: from ice to dark as utilisation goes to 1
 AGE = "cividis"  #: time of failure
 

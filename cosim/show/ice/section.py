@@ -2,43 +2,50 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cosim.recording.pictures import Picture
+from cosim.recording.pictures import BlockShapes, Picture
+from cosim.show.ice.frame import set_frame
 from cosim.show.ice.palette import BLOCK, EDGE, FORCE, HATCH, ICE, STRUCTURE, WATER, WATERLINE
 from cosim.show.ice.scene import Scene
 from cosim.show.scale import scale_of
-from coupling.interface import NS, Array, Phase, SheetView
+from coupling.interface import NS, Array, IntArray, Phase, SheetView
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 AHEAD, BEHIND = 9.0, 5.0  #: thicknesses that are shown in front of the face and behind it
+FAR = 1000.0  #: thicknesses down to which there is water
+#: look of a plate of another section that reaches into this one: pale, and not before the structure, as its outline is
+#: that at its middle
+REACHES: dict[str, Any] = {"alpha": 0.45, "ec": EDGE, "ls": (0, (3, 2)), "lw": 0.6, "zorder": 2.0}
 ARROW = 3.0  #: length of the largest force, in thicknesses
 
 
-def draw_section(ax: Axes, scene: Scene, picture: Picture, y: float) -> None:
-    """The section that holds ``y`` [m]."""
+def draw_section(ax: Axes, scene: Scene, picture: Picture, y: float, fill: bool = False) -> None:
+    """The section that holds ``y`` [m]; with ``fill`` as much of it as the axes have room for."""
     from matplotlib.patches import Polygon
 
     h, key = scene.thickness, scene.section_at(y)
     y = scene.centre(key)
     frame = extent(scene, y)
-    ax.axhspan(frame[2], 0.0, color=WATER, lw=0, zorder=0)
+    ax.axhspan(-FAR * h, 0.0, color=WATER, lw=0, zorder=0)
     ax.axhline(0.0, color=WATERLINE, lw=0.8, zorder=1)
     if len(cut := scene.cut(y)):
         ax.add_patch(Polygon(cut, closed=True, fc=STRUCTURE, ec=EDGE, lw=0.8, zorder=3))
     for corners in sheet_parts(picture.sheet, y, h):
         ax.add_patch(Polygon(corners, closed=True, fc=ICE, ec=EDGE, lw=0.35, zorder=4))
     blocks = picture.blocks
-    for k in np.flatnonzero(blocks.section == key):
-        phase = Phase(int(blocks.phase[k]))
+    for k in cut_blocks(blocks, y):
+        phase, mine = Phase(int(blocks.phase[k])), int(blocks.section[k]) == key
         corners = blocks.outline[blocks.offset[k] : blocks.offset[k + 1]]
-        ax.add_patch(Polygon(corners, closed=True, fc=BLOCK[phase], hatch=HATCH[phase], ec=EDGE, lw=0.6, zorder=5))
+        look = {"hatch": HATCH[phase], "ec": EDGE, "lw": 0.6, "zorder": 5.0} if mine else REACHES
+        ax.add_patch(Polygon(corners, closed=True, fc=BLOCK[phase], **look))
     _draw_forces(ax, picture, scene, key)
-    ax.set(xlim=frame[:2], ylim=frame[2:], xlabel="x [m]", ylabel="z [m]", aspect="equal")
+    ax.set(xlabel="x [m]", ylabel="z [m]")
+    set_frame(ax, frame, fill)
     ax.set_title(f"section y = {y:.3g} m at {picture.t_ns / NS:.2f} s", fontsize=9)
 
 
@@ -49,6 +56,14 @@ def extent(scene: Scene, y: float) -> tuple[float, float, float, float]:
     depth = min(float(cut[:, 1].min()) if len(cut) else -4.0 * h, -4.0 * h)
     top = max(2.5 * h, min(scene.structure.top, 5.0 * h))
     return face - AHEAD * h, face + BEHIND * h, max(depth, -8.0 * h) - 0.5 * h, top
+
+
+def cut_blocks(blocks: BlockShapes, y: float) -> IntArray:
+    """Numbers of the blocks that a section cuts: a plate lies in all sections that it is wide enough to reach.
+
+    What is recorded of it is the outline in the section of its middle.
+    """
+    return np.flatnonzero(np.abs(blocks.position[:, 1] - y) <= 0.5 * blocks.width)
 
 
 def sheet_parts(sheet: SheetView, y: float, h: float) -> list[Array]:
@@ -75,7 +90,8 @@ def _draw_forces(ax: Axes, picture: Picture, scene: Scene, key: int) -> None:
     if largest == 0.0:
         return
     text = f"longest arrow of all sections {scale_of((largest,), 'N').labelled(largest)}"
-    ax.text(0.02, 0.02, text, transform=ax.transAxes, fontsize=7, color=FORCE, zorder=9)
+    box = {"fc": "w", "ec": "none", "alpha": 0.9, "pad": 1.5}
+    ax.text(0.02, 0.03, text, transform=ax.transAxes, fontsize=7, color=FORCE, zorder=9, bbox=box)
     near = np.abs(forces.position[:, 1] - scene.centre(key)) <= 0.5 * scene.pitch * (1 + 1e-6)
     for place, force in zip(forces.position[near], forces.force[near], strict=True):
         end = place[[0, 2]] + force[[0, 2]] / largest * ARROW * scene.thickness

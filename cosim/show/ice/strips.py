@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from cosim.recording import shapes
-from cosim.recording.pictures import Picture
+from cosim.recording.pictures import BlockShapes, Picture
 from cosim.show.ice.plan import cracked_cells
 from cosim.show.ice.scene import Scene
-from cosim.show.ice.section import sheet_parts
+from cosim.show.ice.section import cut_blocks, sheet_parts
 from coupling.interface import Array, Phase
 
 ICE_RGB, EDGE_RGB, CRACK_RGB, FORCE_RGB = (226, 238, 247), (200, 214, 226), (226, 75, 60), (255, 90, 150)
@@ -51,7 +51,7 @@ def moving_strips(scene: Scene, picture: Picture, section: int) -> list[Strips]:
 def _section(scene: Scene, picture: Picture, section: int) -> list[Strips]:
     b, forces = picture.blocks, picture.forces
     ice = [closed(corners) for corners in sheet_parts(picture.sheet, scene.centre(section), scene.thickness)]
-    mine = np.flatnonzero(b.section == section)
+    mine = cut_blocks(b, scene.centre(section))
     blocks = [closed(b.outline[b.offset[k] : b.offset[k + 1]]) for k in mine]
     near = np.abs(forces.position[:, 1] - scene.centre(section)) <= 0.5 * scene.pitch * (1 + 1e-6)
     largest = max(float(np.linalg.norm(forces.force[:, [0, 2]], axis=1).max(initial=0.0)), 1e-30)
@@ -59,16 +59,22 @@ def _section(scene: Scene, picture: Picture, section: int) -> list[Strips]:
     arrows = [np.array([forces.position[k, [0, 2]], ends[k]]) * DOWN for k in np.flatnonzero(near)]
     return [
         Strips("section/sheet", ice, [ICE_RGB] * len(ice), 1.5),
-        Strips("section/rubble", blocks, [shapes.PHASE_RGB[Phase(int(b.phase[k]))] for k in mine], 2.0),
+        Strips("section/rubble", blocks, [_block_rgb(b, k, section) for k in mine], 2.0),
         Strips("section/forces", arrows, [FORCE_RGB] * len(arrows), 2.5),
     ]
+
+
+def _block_rgb(blocks: BlockShapes, k: int, section: int) -> tuple[int, int, int]:
+    """By phase; half as bright for a plate of another section that reaches into this one."""
+    rgb = shapes.PHASE_RGB[Phase(int(blocks.phase[k]))]
+    return rgb if blocks.section[k] == section else (rgb[0] // 2, rgb[1] // 2, rgb[2] // 2)
 
 
 def _plan(picture: Picture) -> list[Strips]:
     sheet, b = picture.sheet, picture.blocks
     quads = shapes.upward(shapes.cell_quads(sheet.intact, sheet.cell_shape), sheet.position)
     rim = list(sheet.position[shapes.rim(quads), :2] * DOWN) if len(quads) else []
-    cracks, depth = cracked_cells(sheet)
+    cracks, depth = cracked_cells(picture)
     dark = [closed(sheet.position[cell, :2]) for cell in cracks[depth > 0.5]]
     corners = []
     for k in range(b.count):

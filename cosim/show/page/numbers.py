@@ -29,6 +29,7 @@ MEANING = {
     "staggering": "lag between sheet and rubble, no physics",
     "residual": "what the terms miss of the total",
 }
+FAILURES = 4  #: instants before a failure that the budget shows
 BALANCES = {
     "mass_error": ("mass: sheet, rubble, crushed, cleared against the start", 1e-12),
     "energy": ("energy that no term explains, over the work of the drift", 0.01),
@@ -76,7 +77,7 @@ def moment_table(run: RunData) -> dict[str, Any] | None:
 
 def budget_table(run: RunData) -> dict[str, Any] | None:
     """Terms down, instants across, for each component; None without a budget."""
-    rows = budget_rows(run)
+    rows, left_out = _fewer(budget_rows(run))
     if not rows:
         return None
     scale = scale_of((row["total"] for row in rows), "N")
@@ -89,7 +90,15 @@ def budget_table(run: RunData) -> dict[str, Any] | None:
             meaning = MEANING.get(name, "a load on the sheet, by its name in the scenario")
             body.append((name, *(scale.text(row["terms"][name]) for row in of), meaning))
         parts.append({"head": [text.replace("all s", "all windows") for text in head], "rows": body})
-    return {"unit": scale.unit, "parts": parts}
+    return {"unit": scale.unit, "parts": parts, "left_out": left_out}
+
+
+def _fewer(rows: list[dict[str, Any]]) -> tuple[list[dict[str, Any]], int]:
+    """At most `FAILURES` failures, those under the largest Fx, and how many are left out: a page has no more room."""
+    found = [row for row in rows if row["when"] == "before failure" and row["component"] == "Fx"]
+    found.sort(key=lambda row: -abs(row["total"]))
+    late = {row["time"] for row in found[FAILURES:]}
+    return [row for row in rows if row["when"] != "before failure" or row["time"] not in late], len(late)
 
 
 def balances(run: RunData) -> list[tuple[str, str, str]]:
