@@ -53,7 +53,7 @@ MAGIC = {
 GROWS = {
     ".mcap": "name another file, or give --force to write over it",
     ".csv": "name another file, or remove it",
-    ".parquet": "give --resume to go on with it, or name another file",
+    ".parquet": "name another file, or remove it; a sweep goes on with its own by --resume",
 }
 
 
@@ -128,9 +128,9 @@ def whole(path: Path, kind: str) -> Iterator[Path]:
         raise trouble(path, error) from error
 
 
-def grow(path: Path, kind: str, force: bool = False) -> IO[bytes]:
+def grow(path: Path, kind: str, force: bool = False, inputs: Iterable[Path] = ()) -> IO[bytes]:
     """Open a file that grows at its place, locked until it is closed; nothing is in it."""
-    writable(path, kind, force=force)
+    writable(path, kind, inputs, force)
     target = resolved(path)
     try:
         if target.exists() and not _is_regular(target):

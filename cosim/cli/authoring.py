@@ -107,6 +107,7 @@ def keys(
 
 def check(scenario: ScenarioArgument, overrides: SetOption = None, as_json: JsonOption = False) -> None:
     """Tell all that is wrong with a scenario, then how plausible it is and what it costs. Simulates nothing."""
+    from cosim.attempts import faults_of
     from cosim.scenario.errors import ScenarioError
     from cosim.scenario.loading import load_scenario
     from cosim.show.check import judged, print_check
@@ -115,7 +116,9 @@ def check(scenario: ScenarioArgument, overrides: SetOption = None, as_json: Json
     faults: tuple[str, ...] = ()
     content: dict[str, Any] = {"scenario": scenario, "faults": [], "doubts": [], "facts": {}, "cost": {}}
     try:
-        content |= judged(load_scenario(scenario, overrides or ()))
+        loaded = load_scenario(scenario, overrides or ())
+        content |= judged(loaded)
+        content["faults"] += faults_of(loaded)
     except ScenarioError as error:
         faults = error.faults
         content["faults"] = list(faults)

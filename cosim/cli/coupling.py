@@ -23,8 +23,8 @@ def fmu(
     from cosim.scenario.loading import load_scenario
     from cosim.show.console import print_line
 
-    writable(output, ".fmu", force=force)
     case = load_scenario(scenario, overrides or ())
+    writable(output, ".fmu", case.inputs, force)
     with whole(output, ".fmu") as part:
         write_fmu(case, part, version)
     step = case.window_ns / 1e9

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -44,14 +44,14 @@ class RunFiles:
         """What is said of the scenario here."""
         return [] if self.checkpoint_every is None else [f"recording.checkpoint_every={self.checkpoint_every}"]
 
-    def check(self) -> None:
+    def check(self, inputs: Sequence[Path]) -> None:
         """Before anything is simulated."""
         if self.follow and self.output is None:
             raise InputError("--follow shows what is recorded; name a recording with -o run.mcap")
         if self.output is not None:
-            writable(self.output, ".mcap", force=self.force)
+            writable(self.output, ".mcap", inputs, self.force)
         if self.ice is not None:
-            writable(self.ice, _kind(self.ice), force=self.force)
+            writable(self.ice, _kind(self.ice), inputs, self.force)
 
 
 @talking
@@ -84,7 +84,7 @@ def run(
     for line in (*fact_lines(about["facts"]), about["cost_text"]):
         talk.detail(line)
     observers: list[Observer] = [ProgressBar(talk)]
-    files.check()
+    files.check(loaded.inputs)
     if dry_run:
         _dry_run(loaded, about, as_json)
         return
@@ -110,9 +110,9 @@ def resume(
     from cosim.show.progress import ProgressBar
     from cosim.watched import simulate
 
-    if ice is not None:
-        writable(ice, _kind(ice))
     run = interrupted(recording)
+    if ice is not None:
+        writable(ice, _kind(ice), [recording, *run.scenario.inputs])
     for text in run.warnings:
         talk.warn(text)
     talk.detail(f"goes on at {run.since.t_ns / 1e9:g} s")

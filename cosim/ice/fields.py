@@ -31,20 +31,19 @@ EDGE = 0.51  #: of a cell: a file may end so far from the middle of a cell outsi
 
 def varied(scenario: Scenario, grid: Grid) -> Varied | None:
     """What the scenario says of the cells of its sheet; None: they are all alike."""
-    fields: dict[str, FieldSection | None] = {name: getattr(scenario.ice, name) for name in FIELDS}
-    if not any(fields.values()):
+    if not any(getattr(scenario.ice, name) for name in FIELDS):
         return None
-    xy = middles(grid)
-    found = []
-    for k, (name, column) in enumerate(FIELDS.items()):
-        field = fields[name]
-        if field is None:
-            found.append(np.ones(grid.cells))
-        elif field.file:
-            found.append(from_file((scenario.folder or Path()) / field.file, column, xy, grid.d))
-        else:
-            found.append(drawn(f"ice.{name}", field, xy, seed_of(scenario.seed, k)))
-    return Varied(*found)
+    return Varied(*(of_cells(scenario, name, grid) for name in FIELDS))
+
+
+def of_cells(scenario: Scenario, name: str, grid: Grid) -> Array:
+    """One field of `FIELDS` over its value in the scenario, (cells,)."""
+    field: FieldSection | None = getattr(scenario.ice, name)
+    if field is None:
+        return np.ones(grid.cells)
+    if field.file:
+        return from_file((scenario.folder or Path()) / field.file, FIELDS[name], middles(grid), grid.d)
+    return drawn(f"ice.{name}", field, middles(grid), seed_of(scenario.seed, list(FIELDS).index(name)))
 
 
 def middles(grid: Grid) -> Array:

@@ -61,7 +61,8 @@ class Recorder:
         self._every_ns = round(run_info.scenario.recording.every * 1e9)
         self._due_ns, self._view_ns = self._every_ns, 0
         texts = attachments(run_info.scenario)
-        self._file = grow(self.path, ".mcap", self.force) if self._since is None else Retraced(self.path)
+        inputs = run_info.scenario.inputs
+        self._file = grow(self.path, ".mcap", self.force, inputs) if self._since is None else Retraced(self.path)
         self._writer = new_writer(self._file)
         self._do(self._writer.start, profile="", library="cosim")
         for name, text in texts.items():

@@ -75,6 +75,13 @@ class Scenario:
         named = [(f"ice.{f}.file", field.file) for f in FIELDS if (field := getattr(self.ice, f)) is not None]
         return [(key, name) for key, name in (*named, ("sheet.broken", self.sheet.broken)) if name]
 
+    @property
+    def inputs(self) -> list[Path]:
+        """Files that a run of it reads, besides its own: none of them is written over, whatever is forced."""
+        motion = self.structure.motion
+        moved = [motion.file] if motion is not None and motion.file else []
+        return [(self.folder or Path()) / name for name in (*(name for _, name in self.named_files), *moved)]
+
     def resolved_toml(self) -> str:
         """The scenario as it ran: overrides applied, every default written out. Loads to the same model."""
         return to_toml(complete(self.raw, self.model))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -93,7 +94,16 @@ def plan(scenario: str, vary: Sequence[str], overrides: Sequence[str], design: D
         raise InputError(f"--keep {max(where.keep)}: there are {len(variants)} variants, numbered from 0")
     folder = None if where.recordings is None else where.recordings.resolve()  # workers may stand elsewhere
     study = Study(replace(written, file=written.file.resolve()), tuple(overrides), text, folder, where.keep)
+    if not where.resume:
+        _keep_recordings(study, len(variants))
     return Plan(base, study, design, axes, variants, reference)
+
+
+def _keep_recordings(study: Study, count: int) -> None:
+    """Refuse a folder that holds recordings of another sweep where this one would write its own."""
+    for path in filter(None, map(study.recording, range(count))):
+        if os.path.lexists(path):
+            raise InputError(f"{path}: exists and is kept; name another folder for the recordings, or remove it")
 
 
 def is_random(scenario: Scenario) -> bool:

@@ -108,6 +108,29 @@ def test_check_tells_every_fault_on_a_line_of_its_own(cosim, tmp_path):
     assert (code, len(json.loads(out)["faults"])) == (2, 3)
 
 
+def test_check_tells_what_is_wrong_with_files_that_the_scenario_names(cosim, tmp_path):
+    """Each as a run would, but all of them at once."""
+    (tmp_path / "bad.csv").write_text("x,y,strength\n1,2,much\n")
+    given = {
+        "sheet.broken": "'nowhere.csv'",
+        "ice.strength_field.file": f"'{tmp_path / 'bad.csv'}'",
+        "ice.thickness_field": "{variation=0.9,distribution='normal'}",
+        "structure.motion": "{kind='prescribed',file='nowhere.csv'}",
+    }
+    options = [f"--set={key}={value}" for key, value in given.items()]
+    code, out, err = cosim("check", "icefloe_gla_upward_cone", *options)
+    lines = err.splitlines()
+    assert (code, len(lines)) == (2, 5), err
+    for line, says in zip(
+        lines,
+        ("column strength holds what is no number", "use lognormal", "no such file", "nowhere.csv", "4 faults"),
+        strict=True,
+    ):
+        assert says in line
+    assert "no fault" not in out
+    assert len(json.loads(cosim("check", "icefloe_gla_upward_cone", *options, "--json")[1])["faults"]) == 4
+
+
 def test_a_sheet_that_does_not_fit_this_machine_is_refused_before_it_is_tried(cosim, monkeypatch):
     monkeypatch.setattr("cosim.scenario.cost.memory_of_this_machine", lambda: 1e9)
     options = ("--set", "sheet.nodes=[501,301]")

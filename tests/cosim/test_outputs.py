@@ -49,6 +49,7 @@ def ways(path):
         ("report", "{recording}", "-o", "{itself}"),
         ("replay", "{recording}", "--save", "{itself}"),
         ("replay", "{recording}", "--screenshot", "{itself}"),
+        ("replay", "{recording}", "--video", "{itself}"),
         ("recover", "{recording}", "-o", "{itself}"),
         ("recover", "{recording}", "-o", "{itself}", "--force"),
     ],
@@ -68,6 +69,9 @@ def test_no_command_writes_over_the_recording_that_it_reads(cosim, recording, co
     [
         ("run", "{case}", "-o", "{itself}"),
         ("run", "{case}", "-o", "{itself}", "--force"),
+        ("run", "{case}", "--ice", "{itself}"),
+        ("fmu", "{case}", "-o", "{itself}"),
+        ("fmu", "{case}", "-o", "{itself}", "--force"),
         ("sweep", "{case}", "--vary", "ice.thickness=1 m", "-o", "{itself}"),
         ("sweep", "{case}", "--vary", "ice.thickness=1 m", "--plot", "{itself}"),
         ("report", "{recording}", "-o", "{itself}"),
@@ -82,6 +86,66 @@ def test_no_command_writes_over_a_scenario(cosim, case, recording, command):
         assert (code, out, err.count("\n")) == (2, "", 1), err
         assert "it is not written over" in err
         assert case.read_bytes() == before
+
+
+def test_a_copy_at_another_scale_is_no_file_that_is_there(cosim, case):
+    before = case.read_bytes()
+    for name in ways(case):
+        code, out, err = cosim("scale", case, "1/4", "-o", name)
+        assert (code, out, err.count("\n")) == (2, "", 1), err
+        assert "is there already and is kept" in err
+        assert case.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("key", "file", "command"),
+    [
+        ("sheet.broken", "ice.mcap", ("run", "-o")),
+        ("sheet.broken", "ice.csv", ("run", "--ice")),
+        ("ice.thickness_field.file", "ice.csv", ("run", "--ice")),
+        ("structure.motion.file", "tower.fmu", ("fmu", "-o")),
+    ],
+)
+def test_no_command_writes_over_a_file_that_the_scenario_names(cosim, run_file, tmp_path, key, file, command):
+    """Each is of the kind that would be written in its place, and even force does not destroy it."""
+    starts = {".csv": b'"x","y","what"\n1,1,"crack"\n', ".fmu": b"PK\x03\x04", ".mcap": run_file.read_bytes()}
+    path = tmp_path / file
+    path.write_bytes(starts[path.suffix])
+    before, (name, option) = path.read_bytes(), command
+    given = [f"--set={key}='{path}'", *(["--set=structure.motion.kind=fmu"] if file == "tower.fmu" else [])]
+    for way in ways(path):
+        for force in ([], ["--force"]):
+            code, out, err = cosim(name, FLOE, *given, option, way, *force)
+            assert (code, out, err.splitlines()[-1].startswith("cosim: ")) == (2, "", True), err
+            assert "does not overwrite its source" in err
+            assert path.read_bytes() == before
+
+
+def test_a_recorder_keeps_what_its_run_reads(run_file, tmp_path, synthetic):
+    """Also where no command line has looked at its place."""
+    path = tmp_path / "ice.mcap"
+    path.write_bytes(run_file.read_bytes())
+    scenario = load_scenario(FLOE, [f"sheet.broken='{path}'"])
+    with pytest.raises(InputError, match="does not overwrite its source"):
+        Recorder(path, force=True).on_start(synthetic.run_info(scenario))
+    assert path.read_bytes() == run_file.read_bytes()
+
+
+def test_recordings_of_another_sweep_are_kept(cosim, case, recording, monkeypatch, tmp_path):
+    folder = tmp_path / "r"
+    folder.mkdir()
+    kept = folder / "variant_00001.mcap"
+    recording.rename(kept)
+    before = kept.read_bytes()
+    monkeypatch.setattr("cosim.study.command.sweep", lambda s, variants, r, done, k: quick(variants, done))
+    given = ("sweep", case, "--vary", "ice.thickness=1 m", "--recordings", folder)
+    code, out, err = cosim(*given, "-o", tmp_path / "t.csv")
+    assert (code, out, err.count("\n")) == (2, "", 1), err
+    assert f"{kept}: exists and is kept" in err
+    assert not (tmp_path / "t.csv").exists()
+    assert kept.read_bytes() == before
+    assert cosim(*given, "--keep", "0")[0] == 0
+    assert cosim(*given, "-o", tmp_path / "t.parquet", "--resume")[0] == 0  # it goes on with its own
 
 
 def test_an_existing_recording_is_kept_unless_force(cosim, case, recording):

@@ -204,3 +204,28 @@ def test_a_long_step_without_equilibrium_is_a_shorter_one(monkeypatch):
     sheet, outcomes = pressed_down(2.0, long_step=4)
     assert len(outcomes) == 40
     assert abs(sheet.energy.residual) < 1e-3 * sheet.energy.contact
+
+
+def given_up(booked_as_a_step):
+    """A floe whose contact has just begun, after one window of a long step that is then given up."""
+    held = np.zeros(GRID.nodes, bool)
+    held[GRID.edge_nodes("x-")] = True
+    sheet = Sheet(Engine(GRID, ICE, hrennikoff(ICE), held_in_plane=held, damping=500.0), 0.05, long_step=4)
+    contact, t = Spring(GRID.edge_nodes("x+")[5:7]), 0.0
+    while sheet.ahead.under_way is None or sheet.ahead.under_way.served != 1 or t < 0.3:
+        sheet.advance(t, [], contact, lambda nodes: None)
+        t += 0.05
+    read_off = sheet.state
+    sheet._drop_long_step(t, contact if booked_as_a_step else None)
+    assert sheet.ahead.under_way is None
+    return sheet, read_off
+
+
+def test_what_was_served_of_a_long_step_balances_however_little_work_was_done():
+    """An interpolation is no step: its books miss so much of the first joules that a run would stop."""
+    sheet, read_off = given_up(booked_as_a_step=True)
+    assert 0.0 < sheet.energy.contact < 1e3
+    assert abs(sheet.energy.residual) < 1e-9 * sheet.energy.contact
+    np.testing.assert_allclose(sheet.state.q, read_off.q, atol=2e-4 * ICE.h)  # as good as a long step may be
+    as_read, _ = given_up(booked_as_a_step=False)
+    assert abs(as_read.energy.residual) > 1e-3 * as_read.energy.contact
