@@ -47,6 +47,7 @@ MAGIC = {
     ".log": b"# cosim log",
     ".fmu": b"PK\x03\x04",
     ".md": b"# Evidence of brash",
+    ".bench.md": b"# Benchmarks of brash",
     ".json": b'{\n  "evidence"',
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists

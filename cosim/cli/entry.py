@@ -13,7 +13,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cosim.cli import authoring, coupling, evidencing, recordings, scenarios, simulate, sweeping, warming
+from cosim.cli import authoring, benching, coupling, evidencing, recordings, scenarios, simulate, sweeping, warming
 from cosim.errors import explain
 from cosim.plain import one_line
 from cosim.signals import StoppedError, handled
@@ -43,6 +43,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "export": recordings.export,
     "verify": simulate.verify,
     "warm": warming.warm,
+    "bench": benching.bench,
 }
 for _name, _command in COMMANDS.items():
     app.command(_name)(_command)
