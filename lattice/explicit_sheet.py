@@ -95,7 +95,7 @@ class ExplicitSheet(BookedFloe):
         if done % part == 0:
             self.state = self.engine.moving(self.state, self.present)
             self._partner.meet(w.t + done * self.engine.dt)
-            w.keep(self.present)
+            w.renew(self._partner.load, self.present)
         return part - done % part
 
     def _advance(self, t: float, loads: Loads, contact: EdgeContact, release: Release) -> Outcome:
@@ -130,7 +130,7 @@ class ExplicitSheet(BookedFloe):
         touch = touch_at(w.t, contact, edge_displacement(self.state, contact.nodes, lever_of(contact)), self.grid.ny)
         forces = w.load, touch.at_once()
         e.start(self.state, self.present, forces)
-        e.state(self.state, self.present, forces)
+        e.look_ahead(forces)
         self.energy.scheme -= self._lead(self.present)
         self._book_half(-0.5, w, touch)
         self._ease()

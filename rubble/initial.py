@@ -81,12 +81,14 @@ def rest(layer: RubbleLayer, fronts: Fronts, *, above: bool = False, longest: fl
     """Let the blocks come to rest at the sheet as it is now; arguments as in `settle`."""
     domain, layer.domain, layer.runner.planar = layer.domain, Domain(), True
     layer.table_of_sections.widen(len(layer.runner.body) > 0)
+    yields, layer.runner.yields = layer.runner.yields, None  # the sheet lies still
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
     calm = _come_to_rest(layer, fronts, above, longest)
     if layer.runner.bed < -layer.physics.depth:
         _ground(layer)
         calm = _come_to_rest(layer, fronts, above, longest)
     time, layer.time, layer.runner.planar, layer.domain = layer.time, 0.0, False, domain
+    layer.runner.yields = yields
     layer.set_form_drag(layer.physics.form_drag)
     layer.table_of_sections.widen(False)
     if calm > CALM:

@@ -131,6 +131,13 @@ def apart(a: Array, b: Array) -> tuple[float, float, float]:
 
 
 @compiled(nogil=True)
+def _far(a: Array, b: Array, way: float) -> bool:
+    """Whether two boxes (lowest x and z, highest x and z) are farther apart than `_meet` brings outlines together."""
+    far: bool = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3]) > way
+    return far
+
+
+@compiled(nogil=True)
 def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, sides: Sides) -> int:
     """Pairs of slices that may meet between two sections; returns how many, more than there is room for if so.
 
@@ -138,13 +145,17 @@ def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, s
     """
     slices, near, found = scene.slices, NEAR * scene.pitch, 0
     outlines = [outline_of(scene, s) for s in range(slices.piece.shape[0])]
+    boxes = np.empty((slices.piece.shape[0], 4))
+    for s in range(slices.piece.shape[0]):
+        for d in range(2):
+            boxes[s, d], boxes[s, 2 + d] = outlines[s][:, d].min(), outlines[s][:, d].max()
     for a in range(slices.piece.shape[0]):
         i = slices.section[a] + 1
         if i + 1 >= first.shape[0] or scene.sections.y[i] - scene.sections.y[i - 1] > 1.5 * scene.pitch:
             continue
         for o in range(first[i], first[i + 1]):
             b = order[o]
-            if slices.plate[a] == slices.plate[b]:
+            if slices.plate[a] == slices.plate[b] or _far(boxes[a], boxes[b], 1.5 * near):
                 continue
             gap, nx, nz = apart(outlines[a], outlines[b])
             if gap > near or _both_cut(pieces, slices.piece[a], slices.piece[b]):

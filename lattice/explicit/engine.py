@@ -98,9 +98,8 @@ class ExplicitEngine(Engine):
     def set_window(self, window: float) -> None:
         """Cuts windows of this length [s] from the next `start` on."""
         self.window = window
-        self.sub_steps = self.parts * math.ceil(
-            window / self.parts / (self._longest or SHARE_OF_CRITICAL * self.critical)
-        )
+        longest = self._longest or SHARE_OF_CRITICAL * self.critical
+        self.sub_steps = self.parts * math.ceil(window / self.parts / longest)
         self.allocate(window / self.sub_steps)
 
     def watch(self, judge: Judge) -> None:
@@ -111,9 +110,8 @@ class ExplicitEngine(Engine):
         share = self.varied.springs
         K_u, K_q = (assemble(self.grid, rows, share=share).tocsr() for rows in (self.rows_u, self.rows_q))
         floating, damped = K_q + sp.diags(self.k_f), self.alpha * K_q + sp.diags(self.C_q)
-        return min(
-            critical_step(K_u, self.alpha * K_u, self.inertia_u), critical_step(floating, damped, self.inertia_q)
-        )
+        in_plane = critical_step(K_u, self.alpha * K_u, self.inertia_u)
+        return min(in_plane, critical_step(floating, damped, self.inertia_q))
 
     def allocate(self, dt: float) -> None:
         """New arrays for sub-steps of this length [s], whether it is stable or not; all cells and nodes are there."""
@@ -122,10 +120,8 @@ class ExplicitEngine(Engine):
         u, q = self.inertia_u[::2], self.inertia_q
         kick = PerNode(np.where(self._held[::2], 0.0, dt / u), dt / q[::3], dt / q[1::3])
         pace = layout.pace(ice, dt, self.alpha, self.damping)
-        self.mesh, self.screen = (
-            layout.mesh(g, self.held[:, 0], kick, self._springs, pace, dt),
-            screen_of(ice, self._thick, self._judge),
-        )
+        self.mesh = layout.mesh(g, self.held[:, 0], kick, self._springs, pace, dt)
+        self.screen = screen_of(ice, self._thick, self._judge)
         self.motion = layout.motion(g)
         self.set_cells(np.ones(g.cells, bool), np.full(g.cells, ice.sigma_t), np.ones(g.nodes, bool))
 
@@ -158,16 +154,20 @@ class ExplicitEngine(Engine):
 
     def state(self, old: State, present: BoolArray, forces: tuple[PointForces, ...]) -> State:
         """The state now under these forces; nodes that have left keep theirs."""
-        y, before = self.motion
-        after = self._next_velocity(Motion(y.copy(), before), forces)
-        v, self._jump = 0.5 * (before + after), self.get(after - before)
-        x, x_dot, on = self.get(y - self.alpha * before), self.get(v), present[:, None]
+        (y, before), after, on = self.motion, self.look_ahead(forces), present[:, None]
+        x, x_dot = self.get(y - self.alpha * before), self.get(0.5 * (before + after))
         return State(
             np.where(on, x[:, :2], old.u),
             np.where(on, x[:, 2:], old.q),
             np.where(on, x_dot[:, :2], old.u_dot),
             np.where(on, x_dot[:, 2:], old.q_dot),
         )
+
+    def look_ahead(self, forces: tuple[PointForces, ...]) -> Array:
+        """Velocities after one more sub-step under these forces, as `Motion.v`; `ripple` is then that of now."""
+        after = self._next_velocity(Motion(self.motion.y.copy(), self.motion.v), forces)
+        self._jump = self.get(after - self.motion.v)
+        return after
 
     def moving(self, old: State, present: BoolArray) -> State:
         """The state now with the velocity of half a sub-step ago; nodes that have left keep theirs."""

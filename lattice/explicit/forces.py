@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from lattice.compiled import compiled
 from lattice.contact import EdgeContact
 from lattice.explicit.layout import W
 from lattice.grid import Array, IntArray
-from lattice.loads import Loads
+from lattice.loads import NodeLoad
 
 
 class PointForces(NamedTuple):
@@ -69,18 +70,25 @@ def indenter(nodes: IntArray, columns: int, stiffness: Array | float) -> Touch:
     return Touch(*np.divmod(nodes, columns), np.zeros(m), np.zeros(m), np.zeros((m, 3)), np.zeros((m, 3)), tangent)
 
 
-def point_forces(loads: Loads, columns: int) -> PointForces:
-    """Those forces of loads that are not zero; ``columns`` nodes across."""
-    if not loads:
+Pressed = tuple[IntArray, Array]  #: nodes on which some force of a load is not zero (k,), and what acts on them (k, 5)
+
+
+def point_forces(parts: Sequence[Pressed], columns: int) -> PointForces:
+    """The forces of loads; ``columns`` nodes across."""
+    if not parts:
         return NOTHING
-    parts = [_pressed(np.ascontiguousarray(n.force_u), np.ascontiguousarray(n.force_q)) for n in loads]
     nodes, force = (np.concatenate(p) for p in zip(*parts, strict=True))
     return PointForces(*np.divmod(nodes, columns), force, np.cumsum([0, *(len(n) for n, _ in parts)]))
 
 
+def pressed(load: NodeLoad) -> Pressed:
+    """Where a load presses."""
+    found: Pressed = _pressed(np.ascontiguousarray(load.force_u), np.ascontiguousarray(load.force_q))
+    return found
+
+
 @compiled(nogil=True)
-def _pressed(force_u: Array, force_q: Array) -> tuple[IntArray, Array]:
-    """Nodes on which some force is not zero, (k,), and what acts on them, (k, 5)."""
+def _pressed(force_u: Array, force_q: Array) -> Pressed:
     nodes, count = np.empty(force_u.shape[0], np.int64), 0
     for n in range(force_u.shape[0]):
         some = force_q[n, 2] != 0.0

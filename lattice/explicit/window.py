@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from lattice.contact import EdgeContact
-from lattice.explicit.forces import PointForces, point_forces
+from lattice.explicit.forces import NOTHING, PointForces, Pressed, point_forces, pressed
 from lattice.explicit.layout import U_X, W
 from lattice.grid import Array, BoolArray, IntArray
-from lattice.loads import Loads, keep
+from lattice.loads import Loads, NodeLoad, keep
 from lattice.reaction import Pair
 from lattice.state import State
 
@@ -23,7 +23,6 @@ class Window:
     t: float  #: at which it begins [s]
     start: State
     loads: Loads
-    load: PointForces  #: the same on nodes that are still in the lattice
     contact: EdgeContact
     columns: int  #: nodes across
     impulse: Array  #: (n, 3) of the contact [N s]
@@ -31,29 +30,40 @@ class Window:
     push: Array  #: (loads, 2) impulse of each load along x and z [N s]
     held: BoolArray  #: (n,) nodes that are held along x
     before: Array  #: (n, 3) deflection and rotation when the present sub-steps began [m], [rad]
+    load: PointForces = NOTHING  #: the loads on nodes that are still in the lattice
     hold: float = 0.0  #: impulse along x of the held nodes on the sheet, less what loads bring to them at once [N s]
 
     def __post_init__(self) -> None:
-        self._sum_up()
+        self._parts: dict[int, Pressed] = {}
+        self.sums = np.zeros_like(self.push)  #: of each load along x and z [N]
+        self._look_at(self.loads)
 
     @classmethod
     def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int, held: BoolArray) -> Window:
         """A window that begins with this state; ``columns`` nodes across, of which those ``held`` (n,) stand still."""
         impulse, q, before = (np.zeros((len(start.q), 3)) for _ in range(3))
-        load, push = point_forces(loads, columns), np.zeros((len(loads), 2))
-        return cls(t, start, loads, load, contact, columns, impulse=impulse, q=q, push=push, held=held, before=before)
+        push = np.zeros((len(loads), 2))
+        return cls(t, start, loads, contact, columns, impulse, q, push, held=held, before=before)
 
     def keep(self, present: BoolArray) -> None:
         """Takes the loads off nodes that have left."""
         keep(self.loads, present)
-        self.load = point_forces(self.loads, self.columns)
-        self._sum_up()
+        self._look_at(self.loads)
 
-    def _sum_up(self) -> None:
-        """Sums of each load along x and z, (loads, 2), and of all along x on held nodes [N]."""
-        force, on_held = self.load.force, self.held[self.load.row * self.columns + self.load.column]
-        sums = [(force[of, U_X].sum(), force[of, W].sum()) for _, of in self.by_name()]
-        self.sums, self.at_held = np.array(sums).reshape(-1, 2), float(force[on_held, U_X].sum())
+    def renew(self, load: NodeLoad, present: BoolArray) -> None:
+        """One of the loads has changed; it does not act on nodes that have left."""
+        keep([load], present)
+        self._look_at([load])
+
+    def _look_at(self, loads: Loads) -> None:
+        """Where these of the loads press, their sums, and that of all along x on held nodes."""
+        for k, each in enumerate(self.loads):
+            if any(each is load for load in loads):
+                self._parts[k] = _, force = pressed(each)
+                self.sums[k] = force[:, U_X].sum(), force[:, W].sum()
+        self.load = point_forces(list(self._parts.values()), self.columns)
+        on_held = self.held[self.load.row * self.columns + self.load.column]
+        self.at_held = float(self.load.force[on_held, U_X].sum())  #: [N]
 
     def by_name(self) -> Iterator[tuple[str, slice]]:
         """Each load, and where its forces stand in ``load``."""
