@@ -1,13 +1,16 @@
 """A structure that answers: third participant of every scheme, window by window.
 
 In a window the ice meets the structure on the straight way to where the load of the window before would bring it. The
-mean load of the window then tells where it is; there the next window begins. The structure's own motion is exact for
-that load, so no impulse comes late. The way that the ice saw is off by dF T^2 / 2m at its end, dF the change of the
-load from window to window: the scheme is of second order in T where the load is smooth.
+mean load of the window then tells where it is. The structure's own motion is exact for that load, so no impulse comes
+late. The way that the ice saw is off by dF T^2 / 2m at its end, dF the change of the load from window to window: the
+scheme is of second order in T where the load is smooth. In the next window the ice sees it go on from there, so that to
+the ice it never jumps.
 
 The ice gives F . (way that it saw), the structure takes F . (way that it went). The difference is energy that the
 coupling takes or makes, and is booked. ``repeats`` go through the window again, from its start, with the way that its
-own load gives: each makes the difference smaller by k T^2 / 4m, k the stiffness of the contact, for every scheme.
+own load gives: each makes the difference smaller by k T^2 / 4m, k the stiffness of the contact, for every scheme. A
+block that touches, or lets go, in another sub-step makes the load of a window jump with the way; two ways may then lead
+to each other's load, and no repeat ends. What such a window misses, the next one makes up for.
 """
 
 from __future__ import annotations
@@ -30,6 +33,7 @@ class WithStructure:
         """``path`` is the one that sheet and rubble know; ``repeats`` at most, of each window."""
         self._scheme, self.motion, self._path, self._repeats = scheme, motion, path, repeats
         self._load = np.zeros(6)  #: mean over the last window [N], [N m]
+        self._ahead = np.zeros(6)  #: of the structure is the place where the ice sees it [m], [rad]
         self._lost, self._exchanged, self._received = 0.0, 0.0, 0.0  #: since the start [J]
 
     def __call__(self, s: Scheduler) -> SheetReport:
@@ -41,7 +45,7 @@ class WithStructure:
             if k > 0 and restore is not None:
                 restore()
             end = self._after(t, window, expected)
-            self._path.go(t, start, end, window)
+            self._path.go(t, start + self._ahead, end, window)
             s.rubble.set_structure(self._path.start, self._path.velocity)
             report = self._scheme(s)
             expected = _load(s, report)
@@ -50,6 +54,7 @@ class WithStructure:
                 break
         self._load = expected
         self.motion.advance(t, window, expected)
+        self._ahead = end - self.motion.displacement
         self._close(s, self.motion.displacement - start, window, k)
         return report
 
@@ -86,12 +91,12 @@ class WithStructure:
 
     def save(self) -> Restore:
         """The structure between two windows, and what this scheme and the one inside remember."""
-        motion, own = self.motion.save(), (self._load, self._lost, self._exchanged, self._received)
+        motion, own = self.motion.save(), (self._load, self._ahead, self._lost, self._exchanged, self._received)
         inner = deepcopy(getattr(self._scheme, "__dict__", {}))
 
         def back() -> None:
             motion()
-            self._load, self._lost, self._exchanged, self._received = own
+            self._load, self._ahead, self._lost, self._exchanged, self._received = own
             if inner:
                 vars(self._scheme).update(deepcopy(inner))
 
