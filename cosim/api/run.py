@@ -48,10 +48,10 @@ class Run:
 
     @cached_property
     def events(self) -> pd.DataFrame:
-        """All events: time [s], kind, load at the time [N], place [m], cause."""
+        """All events: time [s], kind, load [N] as mean over the averaging time like the peaks, place [m], cause."""
         from cosim.export.tables import events
 
-        return events(self.data)
+        return events(self.data.lasting)
 
     @cached_property
     def ledger(self) -> pd.DataFrame:

@@ -41,7 +41,7 @@ def loads(run: RunData, over: float = 0.0) -> pd.DataFrame:
 
 
 def events(run: RunData) -> pd.DataFrame:
-    """All events: time [s], kind, load [N], place [m], size, cause, and a line for people."""
+    """All events: time [s], kind, load [N] as the run has it, place [m], size, cause, and a line for people."""
     import pandas as pd
 
     units = {TIME: "s", "kind": "", **dict.fromkeys(AXES, "N"), "cells": "1", **dict.fromkeys("xyz", "m")}

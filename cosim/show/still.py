@@ -152,7 +152,7 @@ def video(
 
     size = round(SIZE[0] * DOTS), round(SIZE[1] * DOTS)
     writer = imageio_ffmpeg.write_frames(
-        str(out), size, fps=fps, codec="libx264", output_params=["-pix_fmt", "yuv420p", "-f", "mp4"], macro_block_size=4
+        str(out), size, fps=fps, codec="libx264", output_params=["-f", "mp4"], macro_block_size=4
     )
     writer.send(None)
     count = 0

@@ -51,6 +51,7 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, fill: boo
     hidden = LineCollection([np.concatenate((c, c[:1])) for c in corners], colors=colours, lw=0.9, ls=(0, (2, 1.5)))
     hidden.set_zorder(above + 0.05)  # what lies below the structure
     hidden.set_clip_path(structure)
+    hidden.set_in_layout(False)
     ax.add_collection(hidden, autolim=False)
     _draw_forces(ax, scene, picture)
     ax.axhline(scene.centre(scene.section_at(look.section)), color=EDGE, lw=0.8, ls=(0, (6, 4)), zorder=7)
@@ -59,7 +60,7 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, fill: boo
             _bar(ax, shown, label)
     ax.set(xlabel="x [m], the ice drifts to the right", ylabel="y [m]")
     set_frame(ax, frame, fill)
-    grey = "; grey: cracked, darker as cracks are deeper" if len(cracked_cells(picture)[0]) else ""
+    grey = "; grey: cracked, darker as cracks are deeper" if fill and len(cracked_cells(picture)[0]) else ""
     ax.set_title(f"from above at {picture.t_ns / NS:.2f} s{grey}", fontsize=9)
 
 
