@@ -44,7 +44,7 @@ def fact_lines(facts: dict[str, float]) -> list[str]:
     lengths = {name: _length(facts[f"{name}_m"]) for name in ("characteristic_length", "breaking_length", "cell")}
     return [
         f"characteristic length {lengths['characteristic_length']}, breaking length {lengths['breaking_length']}, "
-        f"cells of {lengths['cell']}: {significant(facts['nodes_per_characteristic_length'])} in the former",
+        f"cells of {lengths['cell']}, {significant(facts['nodes_per_characteristic_length'])} in a characteristic length",
         f"the ice drifts {_length(facts['drift_in_run_m'])}; window {_time(facts['window_s'])}, sub-step "
         f"{_time(facts['substep_s'])}; peaks are means over {_time(facts['averaging_s'])}",
     ]
