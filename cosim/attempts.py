@@ -26,7 +26,8 @@ def faults_of(scenario: Scenario) -> list[str]:
 def _attempts(scenario: Scenario) -> Iterator[Callable[[], object]]:
     """What a run reads and draws, one after the other."""
     sheet, folder = scenario.sheet, scenario.folder or Path()
-    grid = Grid(*sheet.nodes, sheet.spacing)
+    nx, ny = sheet.nodes
+    grid = Grid(nx, ny, sheet.spacing)
     if fields := [name for name in FIELDS if getattr(scenario.ice, name) is not None]:
         from cosim.ice.fields import of_cells  # tables are slow to import, and few ice varies
 
