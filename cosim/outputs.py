@@ -54,7 +54,7 @@ MAGIC = {
 GROWS = {
     ".mcap": "name another file, or give --force to write over it",
     ".csv": "name another file, or remove it",
-    ".parquet": "name another file, or remove it; a sweep goes on with its own by --resume",
+    ".parquet": "name another file, or, for the table of a sweep that is to go on, give --resume",
 }
 
 

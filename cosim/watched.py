@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from cosim.errors import explain
+from cosim.errors import InputError, explain
 from cosim.observer import Observer
 from cosim.plain import one_line
 from cosim.recording.writer import Recorder
+from cosim.scenario.cost import cost_of, too_large
 from cosim.scenario.scenario import Scenario
 from cosim.signals import StopAfterWindow, StoppedError
 
@@ -26,11 +27,13 @@ def simulate(
     """Run and close the observers whatever happens; recordings tell how it ended. What ``cosim run --json`` prints.
 
     ``at_end`` as in `cosim.simulation.run_scenario`; ``kept`` is the checkpoint from which the run goes on. New ones
-    are kept beside the first recording.
+    are kept beside the first recording. InputError where the sheet does not fit this machine.
     """
     from cosim.checkpoint.keeping import Checkpoints
     from cosim.simulation import run_scenario
 
+    if refused := too_large(cost_of(scenario.model)):
+        raise InputError(refused)
     watching = [*observers, StopAfterWindow()]
     recorders = [o for o in observers if isinstance(o, Recorder)]
     checkpoints = Checkpoints(scenario, next(iter(recorders), None), kept)

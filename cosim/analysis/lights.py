@@ -175,7 +175,7 @@ LIGHTS = (
         growth,
         1.5,
         False,
-        "mean load of the last quarter {:.2f} of that of the third",
+        "mean load of the last quarter {:.2f} times that of the third",
         "the mean load of the last quarter is {:.1f} times that of the third: it still grows "
         "(lengthen scenario.duration)",
     ),

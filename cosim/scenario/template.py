@@ -37,7 +37,7 @@ MET: dict[str, Any] = {
     "recording.every": "0.5 s",
 }
 CONE: dict[str, Any] = {
-    "scenario.title": "Upward-breaking cone, ice of 80 cm",
+    "scenario.title": "Upward-breaking cone",
     "scenario.duration": "30 s",
     **COMMON,
     "sheet.length": "60 m",
@@ -55,7 +55,7 @@ CONE: dict[str, Any] = {
     **MET,
 }
 SLOPE: dict[str, Any] = {
-    "scenario.title": "Downward-breaking slope, ice of 80 cm",
+    "scenario.title": "Downward-breaking slope",
     "scenario.duration": "30 s",
     **COMMON,
     "sheet.length": "72 m",
@@ -74,7 +74,8 @@ HEAD = """#:schema ./{schema}
 # {title}
 #
 # Every value stands with its unit, as text: "0.8 m" or "80 cm". What is left out has its default; `cosim keys` lists
-# all keys with meaning, unit, range and default. Then `cosim check DIR`, `cosim run DIR -o run.mcap`, `cosim info`.
+# all keys with meaning, unit, range and default. With this folder as DIR: `cosim check DIR`, then
+# `cosim run DIR -o run.mcap`, `cosim info run.mcap`, `cosim report run.mcap -o report.html`.
 
 """
 

@@ -42,9 +42,11 @@ def _registry() -> Any:
 
 def to_si(value: object, unit: Unit) -> float:
     """``"8.7 GPa"`` -> 8.7e9. Floats come from defaults and derived values only, never from a file."""
-    if isinstance(value, bool) or not isinstance(value, str):
-        shown = f"{value} {unit.si}" if isinstance(value, int | float) and not isinstance(value, bool) else unit.example
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        shown = f"{value} {'deg' if unit.si == 'rad' else unit.si}"  # nobody means 55 rad
         raise PydanticCustomError("quantity", f'a quantity needs its unit: write it as a string, for example "{shown}"')
+    if not isinstance(value, str):
+        raise _fault("a quantity needs its unit: write it as a string", unit)
     number, name = split(value, unit)
     try:
         units = _registry().Unit(name)

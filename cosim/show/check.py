@@ -42,9 +42,10 @@ def print_check(content: dict[str, Any]) -> None:
 def fact_lines(facts: dict[str, float]) -> list[str]:
     """What follows from the scenario, in a few lines; with what was chosen where it says nothing."""
     lengths = {name: _length(facts[f"{name}_m"]) for name in ("characteristic_length", "breaking_length", "cell")}
+    per_length = significant(facts["nodes_per_characteristic_length"])
     return [
         f"characteristic length {lengths['characteristic_length']}, breaking length {lengths['breaking_length']}, "
-        f"cells of {lengths['cell']}: {significant(facts['nodes_per_characteristic_length'])} in the former",
+        f"cells of {lengths['cell']}, {per_length} in a characteristic length",
         f"the ice drifts {_length(facts['drift_in_run_m'])}; window {_time(facts['window_s'])}, sub-step "
         f"{_time(facts['substep_s'])}; peaks are means over {_time(facts['averaging_s'])}",
     ]

@@ -69,9 +69,14 @@ class ProgressBar:
 
 
 def event_lines(frame: Frame) -> list[str]:
-    """One line for each kind of event of a window: the first of its kind, and how many more there are."""
+    """One line for each kind of event of a window: the first of its kind, and how many more there are.
+
+    That a piece becomes rubble is told where nothing else tells that it has come off.
+    """
     count = Counter(event.kind for event in frame.events)
-    first = {event.kind: event for event in reversed(frame.events)}
+    if count["hand_over"] <= count["circumferential"]:
+        del count["hand_over"]
+    first = {event.kind: event for event in reversed(frame.events) if event.kind in count}
     more = {kind: f" (and {n - 1} more)" if n > 1 else "" for kind, n in count.items()}
     return [
         f"{event.t_ns / NS:8.2f} s  {kind}: {event.text}{more[kind]}"

@@ -96,6 +96,8 @@ def print_run(result: dict[str, Any], detail: int = 0) -> None:
         print_line(line)
     if result["recording"]:
         print_line(f"recording: {result['recording']}")
+    else:
+        print_line("nothing was recorded: -o run.mcap keeps a run")
 
 
 def _steps(result: dict[str, Any]) -> str:

@@ -83,6 +83,13 @@ def test_a_run_without_an_output_leaves_nothing_behind():
     assert not path.parent.exists()
 
 
+def test_a_sheet_that_does_not_fit_this_machine_is_not_tried(monkeypatch, tmp_path):
+    monkeypatch.setattr("cosim.scenario.cost.memory_of_this_machine", lambda: 1e8)
+    with pytest.raises(ValueError, match="this machine has 100 MB; use fewer nodes"):
+        cosim.run(CASE, set=QUICK, output=tmp_path / "run.mcap")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_run_shows_itself(run):
     assert repr(run) == f"<cosim.Run {CASE}: 1 s, 20 windows, {len(run.events)} events>"
     page = run._repr_html_()

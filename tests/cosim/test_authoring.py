@@ -1,6 +1,7 @@
 """Writing a case: `cosim new`, `keys`, `check`, the schema for editors, and a run that is only tried."""
 
 import json
+import re
 import subprocess
 import sys
 import tomllib
@@ -30,6 +31,7 @@ def test_a_new_scenario_is_one_without_fault_or_doubt(cosim, tmp_path, option, b
     SCHEMA.validate(tomllib.loads(s.text))
     assert json.loads((tmp_path / "pier/scenario.schema.json").read_text()) == schema_of(ScenarioModel)
     assert s.text.startswith("#:schema ./scenario.schema.json\n")
+    assert not re.search(r"\d", s.title)  # what is edited next is not in its title
 
 
 @pytest.mark.parametrize("name", ["icefloe_gla_upward_cone", "basin_2010_floe_55m_centre"])

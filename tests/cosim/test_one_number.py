@@ -147,6 +147,15 @@ def test_units_follow_the_size_of_the_case(cosim, run, tmp_path):
         assert report["loads"].unit == unit
 
 
+def test_no_number_has_digits_that_nobody_knows():
+    """A feed of 31023.31 kg/s is 31.0 t/s."""
+    from cosim.show.scale import scale_of
+
+    shown = [scale_of((value,), unit).labelled(value) for value, unit in ((31023.31, "kg/s"), (0.0412345, "kg/s"))]
+    assert shown == ["31.0 t/s", "41.2 g/s"]
+    assert scale_of((123456.789,), "N").labelled(123456.789) == "123 kN"
+
+
 def test_lengths_of_events_have_three_digits_at_any_scale():
     from coupling.sheet_port.events import told
 

@@ -5,6 +5,7 @@ import io
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
@@ -13,7 +14,7 @@ from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 from cosim.show.console import as_line
-from cosim.show.progress import ProgressBar
+from cosim.show.progress import ProgressBar, event_lines
 from cosim.show.report import write_report
 from cosim.show.talk import QUIET, Talk
 
@@ -44,6 +45,25 @@ def test_quiet_usual_and_verbose(cosim, tmp_path):
     assert log.splitlines()[-2:] == quiet[1].splitlines()
     code, _, err = cosim("run", CASE, *SHORT, "-q", "-v")
     assert (code, "exclude each other" in err) == (2, True)
+
+
+def test_a_piece_that_breaks_off_is_told_once():
+    """It becomes rubble as well, which is told where nothing else tells of the piece."""
+
+    def lines(*kinds):
+        events = [SimpleNamespace(kind=kind, t_ns=k, text="a piece") for k, kind in enumerate(kinds)]
+        return [line.split()[2] for line in event_lines(SimpleNamespace(events=events))]
+
+    assert lines("circumferential", "hand_over", "circumferential", "hand_over") == ["circumferential:"]
+    assert lines("split", "hand_over") == ["split:", "hand_over:"]
+    assert lines("circumferential", "hand_over", "hand_over") == ["circumferential:", "hand_over:"]
+
+
+def test_a_run_that_is_not_recorded_says_so(cosim, tmp_path):
+    assert "nothing was recorded: -o run.mcap keeps a run" in cosim("run", CASE, *SHORT)[1]
+    out = cosim("run", CASE, *SHORT, "-o", tmp_path / "run.mcap")[1]
+    assert "nothing was recorded" not in out
+    assert f"recording: {tmp_path / 'run.mcap'}" in out.replace("\n", "")
 
 
 def test_a_log_file_is_appended_to_and_never_a_scenario(cosim, tmp_path):

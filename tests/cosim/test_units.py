@@ -55,3 +55,9 @@ def test_refused(wrong):
 def test_a_bare_number_is_shown_with_its_unit():
     with pytest.raises(PydanticCustomError, match=r'for example "2\.5 m"'):
         to_si(2.5, Unit("m", "3 m"))
+
+
+def test_a_bare_angle_is_shown_in_degrees():
+    """Nobody who writes 55 means 55 rad."""
+    with pytest.raises(PydanticCustomError, match=r'for example "55 deg"'):
+        to_si(55, Unit("rad", "45 deg"))
