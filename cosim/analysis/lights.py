@@ -26,6 +26,10 @@ NUMERICS = (
 )
 
 
+#: cells over those of the beam test: 1.25 moves the nominal strength by 2 %, 2 by 10 % (ice of 1 m and of 0.1 m)
+COARSER = 1.25
+
+
 @dataclass(frozen=True)
 class Light:
     """One number about a run."""
@@ -84,6 +88,12 @@ def nodes_per_length(run: RunData) -> float | None:
     """Cells in the characteristic length of the floating plate."""
     told = run.metadata.get("characteristic_length_m")
     return None if told is None else float(told) / float(run.metadata["spacing_m"])
+
+
+def cells_of_beam(run: RunData) -> float | None:
+    """Cells over those in which the beam test was simulated that gave the strength of the layers."""
+    told = run.metadata.get("beam_cell_m")
+    return None if told is None else float(run.metadata["spacing_m"]) / float(told)
 
 
 def time_after_peak(run: RunData) -> float | None:
@@ -161,6 +171,15 @@ LIGHTS = (
         True,
         "{:.1f} cells per characteristic length",
         "there are {:.1f} cells in the characteristic length (refine sheet.nodes)",
+    ),
+    Light(
+        "cells_of_beam",
+        cells_of_beam,
+        COARSER,
+        False,
+        "cells {:.2f} times those of the beam test",
+        "cells are {:.1f} times as wide as those in which the beam test was simulated, so that the strength of the "
+        "layers is that of another mesh (refine sheet.nodes to half the width of the beam)",
     ),
     Light(
         "time_after_peak",

@@ -10,7 +10,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cosim.scenario.lengths import approach, breaking_length, characteristic_length, drift_in_run, width_at_waterline
+from cosim.scenario.lengths import (
+    approach,
+    beam_cell,
+    breaking_length,
+    characteristic_length,
+    drift_in_run,
+    width_at_waterline,
+)
 from lattice.floe import LOOSE
 
 NODES_PER_LENGTH = 5.0  #: least number of cells in the characteristic length
@@ -153,7 +160,7 @@ def doubts_of(model: Any) -> list[Doubt]:
 
 def facts_of(model: Any, averaging: float) -> dict[str, float]:
     """Numbers that follow from a scenario, in SI; the same in `cosim check --json` and at the start of a run."""
-    d, length = model.sheet.spacing, characteristic_length(model)
+    d, length, tested = model.sheet.spacing, characteristic_length(model), beam_cell(model)
     return {
         "characteristic_length_m": length,
         "breaking_length_m": breaking_length(model),
@@ -163,4 +170,4 @@ def facts_of(model: Any, averaging: float) -> dict[str, float]:
         "averaging_s": averaging,
         "window_s": float(model.coupling.window),
         "substep_s": float(model.rubble.substep),
-    }
+    } | ({} if tested is None else {"beam_cell_m": tested})

@@ -6,6 +6,8 @@ import math
 from itertools import pairwise
 from typing import Any
 
+from lattice.cracks.beam import FEWEST, WIDTH
+
 
 def characteristic_length(model: Any) -> float:
     """(D / rho_w g)^(1/4) of the floating plate [m]."""
@@ -22,6 +24,18 @@ def breaking_length(model: Any) -> float:
     i = model.ice
     beam = (i.youngs_modulus * i.thickness**3 / (3.0 * model.water.density * model.water.gravity)) ** 0.25
     return float(math.pi / 4.0 * beam)
+
+
+def beam_cell(model: Any) -> float | None:
+    """Size of the cells in which the beam test is simulated that gives the strength of the layers [m].
+
+    None where no beam is: open cracks, or a strength that is given.
+    """
+    if model.fracture.cracks == "open" or model.fracture.layer_strength is not None:
+        return None
+    test = model.ice.beam_test
+    width = float(WIDTH * model.ice.thickness if test is None else test.width)
+    return width / max(FEWEST, round(width / model.sheet.spacing))
 
 
 def width_at_waterline(model: Any) -> float | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
+from cosim.analysis.lights import COARSER
 from cosim.scenario.cost import cost_of, too_large
 from cosim.scenario.judge import doubts_of, facts_of
 from cosim.scenario.scenario import Scenario
@@ -41,14 +42,25 @@ def print_check(content: dict[str, Any]) -> None:
 
 def fact_lines(facts: dict[str, float]) -> list[str]:
     """What follows from the scenario, in a few lines; with what was chosen where it says nothing."""
+    tested = facts.get("beam_cell_m", facts["cell_m"])
     lengths = {name: _length(facts[f"{name}_m"]) for name in ("characteristic_length", "breaking_length", "cell")}
+<<<<<<< HEAD
     per_length = significant(facts["nodes_per_characteristic_length"])
     return [
+=======
+    lines = [
+>>>>>>> h-narrow15
         f"characteristic length {lengths['characteristic_length']}, breaking length {lengths['breaking_length']}, "
         f"cells of {lengths['cell']}, {per_length} in a characteristic length",
         f"the ice drifts {_length(facts['drift_in_run_m'])}; window {_time(facts['window_s'])}, sub-step "
         f"{_time(facts['substep_s'])}; peaks are means over {_time(facts['averaging_s'])}",
     ]
+    if facts["cell_m"] > COARSER * tested:
+        lines.append(
+            f"the strength of the layers is that of cells of {_length(tested)}, half as wide as the beam test; these "
+            f"are {significant(facts['cell_m'] / tested)} times as wide"
+        )
+    return lines
 
 
 def _length(value: float) -> str:

@@ -46,6 +46,7 @@ from cosim.verify.cracks import (
     first_encounter,
     friction,
     hinged_ring,
+    narrow_cone,
     pressed_edge,
     thrust,
     wedge_beams,
@@ -81,6 +82,7 @@ CASES: dict[str, ModuleType] = {
     "centre-crack": centre_crack,
     "pressed-edge": pressed_edge,
     "cone-breaking": cone_breaking,
+    "narrow-cone": narrow_cone,
     "first-encounter": first_encounter,
     "lock-in": lock_in,
 }

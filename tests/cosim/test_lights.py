@@ -8,11 +8,14 @@ import pytest
 
 from cosim.analysis import lights
 from cosim.analysis.run_data import RunData
+from cosim.build import build_ice
 from cosim.recording.reader import read_run
 from cosim.recording.writer import Recorder
+from cosim.scenario.lengths import beam_cell
 from cosim.scenario.loading import load_scenario
 from cosim.simulation import run_scenario
 from coupling.interface import Event, SimulationError
+from lattice.cracks.beam import cut_beam, standard_beam
 
 N = 400
 T = 0.05 * np.arange(1, N + 1)
@@ -160,3 +163,23 @@ def test_a_structure_that_is_never_touched_ends_the_run(cosim, tmp_path):
     told = json.loads(cosim("info", file, "--json")[1])
     assert told["ended"].startswith("the structure was never touched")
     assert "failed at its end" in told["remark"]
+
+
+def test_cells_wider_than_those_of_the_beam_test_are_told():
+    wide, fine = run(beam_cell_m="1.0"), run(beam_cell_m="1.3")
+    assert lights.cells_of_beam(wide) == pytest.approx(1.5, rel=1e-12)
+    assert lights.trust(wide)["because"] == [
+        "cells are 1.5 times as wide as those in which the beam test was simulated, so that the strength of the layers "
+        "is that of another mesh (refine sheet.nodes to half the width of the beam)"
+    ]
+    assert lights.trust(fine)["trustworthy"]
+    assert lights.cells_of_beam(run()) is None
+
+
+@pytest.mark.parametrize("nodes", ["[121,91]", "[73,55]", "[241,181]", "[25,19]"])
+def test_the_cells_of_the_beam_are_those_that_are_simulated(nodes):
+    scenario = load_scenario("narrow_cone", [f"sheet.nodes={nodes}"])
+    simulated = cut_beam(standard_beam(build_ice(scenario)), scenario.sheet.spacing).grid.d
+    assert beam_cell(scenario.model) == pytest.approx(simulated, rel=1e-12)
+    assert beam_cell(load_scenario("narrow_cone", ["fracture.layer_strength='650 kPa'"]).model) is None
+    assert beam_cell(load_scenario("van_vliet_2018_floe_165m").model) is None
