@@ -44,12 +44,8 @@ def fact_lines(facts: dict[str, float]) -> list[str]:
     """What follows from the scenario, in a few lines; with what was chosen where it says nothing."""
     tested = facts.get("beam_cell_m", facts["cell_m"])
     lengths = {name: _length(facts[f"{name}_m"]) for name in ("characteristic_length", "breaking_length", "cell")}
-<<<<<<< HEAD
     per_length = significant(facts["nodes_per_characteristic_length"])
-    return [
-=======
     lines = [
->>>>>>> h-narrow15
         f"characteristic length {lengths['characteristic_length']}, breaking length {lengths['breaking_length']}, "
         f"cells of {lengths['cell']}, {per_length} in a characteristic length",
         f"the ice drifts {_length(facts['drift_in_run_m'])}; window {_time(facts['window_s'])}, sub-step "
