@@ -48,8 +48,8 @@ def bench(
     with whole(target, ".bench.md") as part:
         part.write_text(page(found, f"{date:%Y-%m-%d}", where), encoding="utf-8")
     if as_json:
-        rows = [{"name": m.benchmark.name, "code": m.code, "wall_s": m.wall, "text": m.text} for m in found]
-        print_json({"date": f"{date:%Y-%m-%d}", "machine": where, "benchmarks": rows})
+        results = [{"name": m.benchmark.name, "code": m.code, "wall_s": m.wall, "text": m.text} for m in found]
+        print_json({"date": f"{date:%Y-%m-%d}", "machine": where, "benchmarks": results})
     talk.note(f"written: {output}")
     if failed := [m.benchmark.name for m in found if m.code]:
         raise FailedError(f"benchmarks failed: {', '.join(failed)}; {output} holds what they said")
