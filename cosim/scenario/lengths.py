@@ -35,7 +35,7 @@ def beam_cell(model: Any) -> float | None:
         return None
     test = model.ice.beam_test
     width = float(WIDTH * model.ice.thickness if test is None else test.width)
-    return width / max(FEWEST, round(width / model.sheet.spacing))
+    return width / max(FEWEST, round(width / float(model.sheet.spacing)))
 
 
 def width_at_waterline(model: Any) -> float | None:
