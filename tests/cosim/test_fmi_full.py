@@ -58,8 +58,8 @@ def test_a_case_with_rubble(tmp_path):
 
 @pytest.mark.slow
 def test_the_case_of_the_basin_as_it_stands(tmp_path):
-    """Two minutes of a processor."""
-    *_, (run, peak, off) = compare(load_scenario("basin_2010_floe_55m_centre"), 3, tmp_path, end=20.0)
-    assert run.t_ns == 20 * NS
+    """Past its first hand-overs; two minutes of a processor."""
+    *_, (run, peak, off) = compare(load_scenario("basin_2010_floe_55m_centre"), 3, tmp_path, end=28.0)
+    assert run.fragments >= 3
     assert peak > 6e6
     assert off < 1e-9
