@@ -21,7 +21,7 @@ from cosim.build import build, run_info
 from cosim.checkpoint.keeping import Checkpoints
 from cosim.moments import Grip, grip_of
 from cosim.observer import Observer
-from cosim.scenario.lengths import characteristic_length
+from cosim.scenario.lengths import told_lengths
 from cosim.scenario.scenario import Scenario
 from coupling.interface import NS, PHASES, Array, Event, Frame, IntArray, SimulationError
 from coupling.scheduler import Scheduler
@@ -105,8 +105,8 @@ class RunResult:
             "averaging_s": repr(float(self.scenario.averaging)),
             "window_ns": str(self.scenario.window_ns),
             "spacing_m": repr(float(self.scenario.sheet.spacing)),
-            "characteristic_length_m": repr(characteristic_length(self.scenario.model)),
             "moment_point_m": json.dumps(self.scenario.moment_point),
+            **told_lengths(self.scenario.model),
         }
         staggering = np.array(self.staggering).reshape(-1, 2)
         return RunData(

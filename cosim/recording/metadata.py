@@ -10,7 +10,7 @@ from typing import Any
 
 from cosim import provenance
 from cosim.observer import RunInfo
-from cosim.scenario.lengths import beam_cell, characteristic_length
+from cosim.scenario.lengths import told_lengths
 
 FORMAT = "3"  #: of recordings; goes up with every change that an older reader would misread
 RUN, END = "run", "end"  #: names of the records: what was asked, how it ended
@@ -21,7 +21,6 @@ SEAL = "crc32"
 def run_metadata(info: RunInfo, texts: Mapping[str, str]) -> dict[str, str]:
     """Strings, as MCAP wants them; ``texts`` are the attachments."""
     scenario = info.scenario
-    tested = beam_cell(scenario.model)
     return {
         "format": FORMAT,
         "version": provenance.version(),
@@ -39,11 +38,11 @@ def run_metadata(info: RunInfo, texts: Mapping[str, str]) -> dict[str, str]:
         "duration_ns": str(info.duration_ns),
         "window_ns": str(info.window_ns),
         "averaging_s": repr(float(scenario.averaging)),
-        "characteristic_length_m": repr(characteristic_length(scenario.model)),
+        **told_lengths(scenario.model),
         "units": json.dumps({"force": "N", "moment": "N m", "length": "m", "time": "s", "energy": "J", "mass": "kg"}),
         "moment_point_m": json.dumps(scenario.moment_point),
         "attachments": json.dumps(list(texts)),
-    } | ({} if tested is None else {"beam_cell_m": repr(tested)})
+    }
 
 
 def sealed(values: Mapping[str, str]) -> dict[str, str]:

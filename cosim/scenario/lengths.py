@@ -38,6 +38,13 @@ def beam_cell(model: Any) -> float | None:
     return width / float(max(FEWEST, round(width / model.sheet.spacing)))
 
 
+def told_lengths(model: Any) -> dict[str, str]:
+    """Lengths by which a run is judged, as a recording keeps them [m]; without that of a beam where none is."""
+    tested = beam_cell(model)
+    told = {"characteristic_length_m": repr(characteristic_length(model))}
+    return told if tested is None else {**told, "beam_cell_m": repr(tested)}
+
+
 def width_at_waterline(model: Any) -> float | None:
     """Of the structure [m]; None for a plane, and for a profile that has no waterline."""
     s = model.structure

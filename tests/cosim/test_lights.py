@@ -121,8 +121,10 @@ def test_a_run_and_its_recording_say_the_same_in_every_command(cosim, tmp_path):
     assert not own["trustworthy"]
     assert own["because"] == info["because"] == beside["because"]
     for name, light in own["lights"].items():
-        read = info["lights"][name]["value"]
-        assert read == (None if light["value"] is None else pytest.approx(light["value"], rel=1e-9)), name
+        recorded = info["lights"][name]["value"]
+        assert (light["value"] is None) == (recorded is None) == (name == "cells_of_beam"), name  # its cracks are open
+        if recorded is not None:
+            assert light["value"] == pytest.approx(recorded, rel=1e-9), name
     line = f"not trustworthy, because {'; '.join(own['because'])}"
     for command in ("info", "compare"):
         assert line in cosim(command, path)[1]
