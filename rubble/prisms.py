@@ -50,18 +50,24 @@ def _own(scene: Scene, k: int, x: float, y: float, z: float) -> tuple[float, flo
     return at_x, p[1] + dy - aside(moving, at_x, at_z), at_z
 
 
+@compiled(nogil=True, borrows=True)
+def _along(scene: Scene, k: int, axis: int) -> tuple[float, float, float]:
+    """An axis of plate k in the axes of the structure, to first order in its angles as `_own`."""
+    r, d, cos, sin = scene.plates.rotation[k], scene.moving.place, scene.moving.turn[0], scene.moving.turn[1]
+    dx, dy, dz = r[0, axis] + d[5] * r[1, axis], r[1, axis], r[2, axis] - d[3] * r[1, axis]
+    x, z = cos * dx - sin * dz, sin * dx + cos * dz
+    return x, dy - d[5] * x + d[3] * z, z
+
+
 @compiled(nogil=True)
 def _prism(scene: Scene, i: int) -> Prism:
     """Piece i."""
     pieces, k = scene.pieces, scene.pieces.plate[i]
-    y = pieces.y[i]
-    o = _own(scene, k, 0.0, y, 0.0)
-    a, b, c = _own(scene, k, 1.0, y, 0.0), _own(scene, k, 0.0, y + 1.0, 0.0), _own(scene, k, 0.0, y, 1.0)
     return Prism(
-        o,
-        (a[0] - o[0], a[1] - o[1], a[2] - o[2]),
-        (b[0] - o[0], b[1] - o[1], b[2] - o[2]),
-        (c[0] - o[0], c[1] - o[1], c[2] - o[2]),
+        _own(scene, k, 0.0, pieces.y[i], 0.0),
+        _along(scene, k, 0),
+        _along(scene, k, 1),
+        _along(scene, k, 2),
         pieces.corners[pieces.offset[i] : pieces.offset[i + 1]],
         0.5 * pieces.width[i],
     )
