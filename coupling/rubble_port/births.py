@@ -35,7 +35,9 @@ class Momenta:
     centre: Array  #: (3,) of their mass [m]
     linear: Array  #: (3,) [N s]
     spin: Array  #: (3,) about the centre, the same for every observer [N m s]
-    scale: Array  #: (2,) what each would be if no parts cancelled, the second with the velocity of the centre
+    #: (2,) what each would be if no parts cancelled, the second with the velocity of the centre and, for the ice of
+    #: each node, with half a thickness as its arm
+    scale: Array
 
     @classmethod
     def of(cls, f: Fragment, thickness: float, density: float) -> Momenta:
@@ -45,7 +47,9 @@ class Momenta:
         p, mean = mass[:, None] * f.velocity, np.average(f.velocity, axis=0, weights=mass)
         spin = np.cross(at - centre, mass[:, None] * (f.velocity - mean))
         rotary = mass * thickness**2 / 12.0 * f.tilt_rate  # inertia of a node (2.22)
-        scale = np.array([np.abs(p).sum(), np.abs(np.cross(at - centre, p)).sum() + np.abs(rotary).sum()])
+        total = np.abs(p).sum()
+        turning = np.abs(np.cross(at - centre, p)).sum() + 0.5 * thickness * total + np.abs(rotary).sum()
+        scale = np.array([total, turning])
         spin[:, 1] += rotary
         return cls(centre, p.sum(axis=0), spin.sum(axis=0), scale)
 
