@@ -170,8 +170,13 @@ def centre_of(prisms: Sequence[tuple[Prism, Array]]) -> tuple[float, Array, Arra
     spin = np.zeros((3, 3))
     for prism, at in prisms:
         d = at - centre
-        spin += prism.tensor + prism.mass * (d @ d * np.eye(3) - np.outer(d, d))
+        spin += prism.tensor + offset_inertia(prism.mass, d)
     return mass, centre, spin
+
+
+def offset_inertia(mass: float, d: Array) -> Array:
+    """What the inertia of a mass [kg] about a point has beyond that about its centre, d (3,) away (3, 3) [kg m2]."""
+    return np.asarray(mass * (d @ d * np.eye(3) - np.outer(d, d)))
 
 
 def moved_mass(plate: Plate, physics: RubblePhysics, volume: float) -> tuple[float, Array]:

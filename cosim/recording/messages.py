@@ -20,16 +20,7 @@ MOMENT_FIELDS = (*MOMENT_AXES, *(f"{phase}_{axis}" for phase in PHASES for axis 
 GRIP_FIELDS = ("weight", "weight_x", "weight_y", "weight_z", "attack_x", "attack_y", "attack_z")
 NAMES = ("Load", "Event", "Ledger", "Contact", "Sheet", "Blocks", "Stresses")
 #: packed as `cosim.recording.planes` does it
-SHEET_BYTES = (
-    "dx",
-    "dy",
-    "z",
-    "damage",
-    "utilisation",
-    "present",
-    "intact",
-    "elastic",
-)  #: see `cosim.recording.planes`
+SHEET_BYTES = ("dx", "dy", "z", "damage", "utilisation", "present", "intact", "elastic")
 BLOCKS_BYTES = ("id", "section", "phase", "corners", "x", "y", "z", "width", "corner_x", "corner_z")
 
 _Field = descriptor_pb2.FieldDescriptorProto

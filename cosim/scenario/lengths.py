@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import Any
 
-from lattice.cracks.beam import FEWEST, WIDTH
+from lattice.cracks.beam import WIDTH, cells_across
 
 
 def characteristic_length(model: Any) -> float:
@@ -35,7 +35,7 @@ def beam_cell(model: Any) -> float | None:
         return None
     test = model.ice.beam_test
     width = float(WIDTH * model.ice.thickness if test is None else test.width)
-    return width / float(max(FEWEST, round(width / model.sheet.spacing)))
+    return width / cells_across(width, model.sheet.spacing)
 
 
 def told_lengths(model: Any) -> dict[str, str]:

@@ -18,7 +18,7 @@ from coupling.rubble_port.births import Momenta, PieceBirth, births, frame_of
 from rubble.geometry import area_moments, contiguous
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
-from rubble.piece import Plate, Start, centre_of, prism_at, quaternion_of
+from rubble.piece import Plate, Start, centre_of, offset_inertia, prism_at, quaternion_of
 from rubble.prism import Prism
 
 #: share of h^2 below which what is left of a trimmed piece counts as crushed: a sliver as long as the ice is thick
@@ -115,7 +115,7 @@ def _moments(prisms: Sequence[tuple[Prism, Array]], about: Array) -> tuple[float
     """Mass, first moment (3,) and inertia (3, 3) about a point of prisms, in the axes of their plate."""
     mass, centre, spin = centre_of(prisms)
     d = centre - about
-    return mass, mass * d, spin + mass * (d @ d * np.eye(3) - np.outer(d, d))
+    return mass, mass * d, spin + offset_inertia(mass, d)
 
 
 def _arrived(born: Plate | None, start: Start, whole: Plate) -> tuple[Array, Array]:

@@ -34,7 +34,7 @@ class Meeting:
         self.load = NodeLoad(RUBBLE, np.zeros((n, 2)), np.zeros((n, 3)))
         mass = np.column_stack((engine.inertia_u.reshape(n, 2), engine.inertia_q.reshape(n, 3)[:, 0]))
         self._lightness = np.where(np.column_stack((engine.held, np.zeros(n, bool))), 0.0, 1.0 / mass)  #: (n, 3) [1/kg]
-        self._velocity = motion.all_velocities()
+        self._velocity = motion.velocities()
         self._nodes, self._place = np.zeros(0, np.int64), np.zeros((0, 3))
         self.work = 0.0  #: of the forces in this window, in the fixed frame [J]
         self.answer: Callable[[], SheetForces] = SheetForces.none  #: the rubble's sub-step, forces in it
@@ -50,7 +50,7 @@ class Meeting:
         self._motion.t = t
         self.note()
         forces = self.answer()
-        self._velocity = self._motion.all_velocities()
+        self._velocity = self._motion.velocities()
         self.take(forces)
 
     def take(self, forces: SheetForces) -> None:

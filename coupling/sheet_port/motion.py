@@ -9,6 +9,8 @@ from lattice.contact import Lever, edge_displacement
 from lattice.floe import Floe
 from lattice.state import State
 
+EVERY = slice(None)  #: nodes
+
 
 class Motion:
     """The frame of the lattice drifts along +x with ``velocity``; its states are displacements in that frame."""
@@ -37,17 +39,12 @@ class Motion:
         )
         return at_rest + edge_displacement(self.sheet.state, nodes, lever)
 
-    def velocities(self, nodes: IntArray) -> Array:
+    def velocities(self, nodes: IntArray | slice = EVERY) -> Array:
         """Velocities of nodes now, (n, 3) [m/s]."""
-        s, out = self.sheet.state, np.empty((len(nodes), 3))
-        out[:, :2], out[:, 2] = s.u_dot[nodes] + (self.velocity, 0.0), s.q_dot[nodes, 0]
-        return out
-
-    def all_velocities(self) -> Array:
-        """Those of all nodes."""
-        s, out = self.sheet.state, np.empty((len(self.sheet.state.q), 3))
-        np.add(s.u_dot, (self.velocity, 0.0), out=out[:, :2])
-        out[:, 2] = s.q_dot[:, 0]
+        in_plane, up = self.sheet.state.u_dot[nodes], self.sheet.state.q_dot[nodes, 0]
+        out = np.empty((len(up), 3))
+        np.add(in_plane, (self.velocity, 0.0), out=out[:, :2])
+        out[:, 2] = up
         return out
 
     def displacement(self, nodes: IntArray) -> Array:

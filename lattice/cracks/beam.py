@@ -65,9 +65,14 @@ class CutBeam:
     arm: float  #: from the middle of the first row of cells inside the beam to the tip [m]
 
 
+def cells_across(width: float, d: float) -> int:
+    """Of about d [m] over the width of a beam [m]."""
+    return max(FEWEST, round(width / d))
+
+
 def cut_beam(beam: Beam, d: float) -> CutBeam:
     """Cells of about d [m]; a margin of half the length around the beam."""
-    across = max(FEWEST, round(beam.width / d))
+    across = cells_across(beam.width, d)
     size = beam.width / across
     along = max(2, round(beam.length / size))
     n = along + 2 * max(2, round(0.5 * along)) + 1

@@ -26,7 +26,6 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import argparse
 import datetime
 import multiprocessing
-import platform
 import resource
 import time
 from pathlib import Path
@@ -34,6 +33,7 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from cosim import bench
 from cosim.build import build
 from cosim.scenario.loading import load_scenario
 from coupling.scheduler import Scheduler
@@ -122,9 +122,7 @@ def whole_run(task: tuple[int, float]) -> dict[str, float]:
 
 def machine() -> str:
     """Date, processor and how busy the machine is."""
-    lines = Path("/proc/cpuinfo").read_text().splitlines() if Path("/proc/cpuinfo").exists() else []
-    model = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), platform.processor())
-    return f"{datetime.date.today()}, {model}, one thread of {os.cpu_count()}, load average {os.getloadavg()[0]:.1f}"
+    return f"{datetime.date.today()}, one thread; {bench.machine()}"
 
 
 def apart(f, task):

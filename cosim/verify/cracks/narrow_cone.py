@@ -19,6 +19,7 @@ import numpy as np
 from cosim.baselines.croasdale import croasdale
 from cosim.baselines.inputs import given
 from cosim.build import build, build_ice, build_measured
+from cosim.scenario.lengths import characteristic_length
 from cosim.scenario.loading import load_scenario
 from cosim.scenario.scenario import Scenario
 from cosim.verify.case import CaseResult, at_most, value
@@ -42,13 +43,14 @@ SOURCE = "the mesh of the case, cells of h"
 
 def scenario_of(h: float, cells: float, more: Sequence[str] = (), speed: float = 0.4) -> Scenario:
     """The case at a thickness [m], in cells of so many thicknesses."""
-    d, L_c = cells * h, (3e9 * h**3 / (12.0 * 1025.0 * 9.81 * (1.0 - 1.0 / 9.0))) ** 0.25
+    thickness = f"ice.thickness='{h} m'"
+    d, L_c = cells * h, characteristic_length(load_scenario("narrow_cone", [thickness]).model)
     nodes = round(REACH * L_c / d) + 1, 2 * round((BESIDE * L_c + 2.0) / d) + 1  # a node on the axis
     return load_scenario(
         "narrow_cone",
         [
             "rubble.enabled=false",
-            f"ice.thickness='{h} m'",
+            thickness,
             f"sheet.length='{(nodes[0] - 1) * d!r} m'",
             f"sheet.width='{(nodes[1] - 1) * d!r} m'",
             f"sheet.nodes=[{nodes[0]}, {nodes[1]}]",
