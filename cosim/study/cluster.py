@@ -1,8 +1,10 @@
 """Tasks on a dask cluster that is already there: by the address of its scheduler, or by its scheduler file.
 
 Only as many tasks are handed out as keep the workers busy, so that the scheduler holds few of them, however many the
-study has. A task whose worker dies goes to another one, a few times; then its row holds the error. Everything that a
-task needs goes with it (some kilobytes), so workers need this program and no files.
+study has. A task whose worker dies goes to another one, a few times. The scheduler blames a death on all tasks of that
+worker, those that only waited there too; so the blamed ones run once more at the end, one at a time, and only what
+kills its workers alone has the error in its row. Everything that a task needs goes with it (some kilobytes), so workers
+need this program and no files.
 """
 
 from __future__ import annotations
@@ -57,23 +59,25 @@ class Cluster:
         """Number and row of each task as it ends."""
         waiting, study = iter(tasks), uuid4().hex[:8]
         with self._client() as (distributed, client):
-            numbers: dict[str, int] = {}
+            given: dict[str, Task] = {}
+            blamed: list[Task] = []
 
-            def hand_out(count: int) -> list[Any]:
-                """The next tasks, as many as there are."""
-                made = []
-                for number, variant in islice(waiting, max(count, 0)):
-                    key = f"brash-{study}-{number}"
-                    made.append(client.submit(_here, work, number, variant, key=key, retries=self.retries, pure=False))
-                    numbers[key] = number
-                return made
+            def hand_out(task: Task, name: str = "brash") -> Any:
+                key = f"{name}-{study}-{task[0]}"
+                given[key] = task
+                return client.submit(_here, work, *task, key=key, retries=self.retries, pure=False)
 
             room = Room(client)
-            futures = distributed.as_completed(hand_out(room.now()), loop=client.loop)
+            futures = distributed.as_completed([hand_out(t) for t in islice(waiting, room.now())], loop=client.loop)
             for future in futures:
-                number = numbers.pop(future.key)
-                yield number, _row(future, self.address)
-                futures.update(hand_out(room.now() - len(numbers)))
+                task = given.pop(future.key)
+                if isinstance(future.exception(), distributed.KilledWorker):
+                    blamed.append(task)
+                else:
+                    yield task[0], _row(future, self.address)
+                futures.update([hand_out(t) for t in islice(waiting, max(room.now() - len(given), 0))])
+            for task in blamed:
+                yield task[0], _row(hand_out(task, "brash-alone"), self.address)
 
     @contextmanager
     def _client(self) -> Iterator[tuple[Any, Any]]:
@@ -104,13 +108,13 @@ def program() -> str:
 
 
 def _row(future: Any, address: str) -> Row:
-    """The row of a task that has ended; FailedError where the scheduler has gone or a worker runs another program."""
-    if future.status == "cancelled":
+    """The row of a task, waited for; FailedError where the scheduler has gone or a worker runs another program."""
+    error = future.exception()  # of a cancelled task: nothing
+    if future.cancelled():
         raise FailedError(f"--scheduler {address}: the scheduler has gone; start it again and go on with --resume")
-    try:
-        row: Row = future.result()
-    except Exception as error:
+    if error is not None:
         return {"error": f"no worker brought it to its end: {' '.join(str(error).split())[:300]}"}
+    row: Row = future.result()
     theirs = row.pop("program")
     if theirs != program():
         raise FailedError(f"a worker runs brash {theirs}, this is {program()}; install the same on all machines")
