@@ -7,9 +7,9 @@ import math
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Structure
 from coupling.rubble_port import RubblePort
-from coupling.rubble_port.initial import Initial
 from lattice.grid import Grid
 from rubble.domain import Domain
+from rubble.initial import Initial
 from rubble.physics import RubblePhysics
 
 
@@ -65,7 +65,7 @@ def initial_rubble(scenario: Scenario) -> Initial:
     """What is asked of the rubble of earlier ice."""
     r = scenario.rubble
     lengths = (float(r.initial_lengths[0]), float(r.initial_lengths[1]))
-    return Initial(r.initial_volume, r.initial_porosity, lengths, scenario.scenario.seed)
+    return Initial(r.initial_volume, scenario.scenario.seed, r.initial_porosity, lengths, r.initial_slope)
 
 
 def sections_of(scenario: Scenario) -> tuple[float, float]:

@@ -10,7 +10,7 @@ from math import inf
 
 from coupling.interface import SheetForces, SimulationError
 from coupling.rubble_port import RubblePort
-from coupling.rubble_port.initial import Initial, fill, front_sections, rest_again
+from coupling.rubble_port.initial import Initial, all_sections, fill, rest_again, sections_of
 from coupling.sheet_port import SheetPort
 
 CHANGE = 0.01  #: of the lift on the sheet between two rounds, relative
@@ -19,7 +19,7 @@ ROUNDS = 20
 
 def lay_rubble(sheet: SheetPort, rubble: RubblePort, asked: Initial) -> None:
     """Settles rubble, with the sheet in equilibrium with it."""
-    sections = front_sections(rubble)
+    sections = sections_of(rubble, asked, sheet.edges(dict.fromkeys(all_sections(rubble), -inf)))
     pile = fill(rubble, asked, sheet.edges(dict.fromkeys(sections, -inf)))
     lift = _lift(rubble.forces_on_sheet())
     for _ in range(ROUNDS):

@@ -5,16 +5,18 @@ Rubble lies under the sheet, or on top of it: ``side`` is +1 or -1, and heights 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
 
 import numpy as np
 
 from rubble.arrays import Array
+from rubble.heap import Place
 from rubble.layer import RubbleLayer
 
 STEP = 1 / 30  #: of the raster on which a pile is measured, in thicknesses
+BIN = 1 / 4  #: of distances from the structure, in thicknesses
 
 
 @dataclass(frozen=True)
@@ -32,41 +34,42 @@ class Pile:
     force: float  #: on sheet and structure, towards the sheet, mean of the last window [N]
 
 
-def measure(
-    layer: RubbleLayer, fronts: Mapping[int, tuple[float, float]], side: float = 1.0, time: float = 0.0, calm: float = 0
-) -> Pile:
-    """Porosity, slope and force of the pile as it lies; ``fronts`` as in `initial.settle`."""
-    step = STEP * layer.physics.thickness
-    found = [p for key, corner in fronts.items() if (p := _profile(layer, key, corner, side, step)) is not None]
-    ice, pores = sum(p.ice for p in found), sum(p.pores for p in found)
+def measure(layer: RubbleLayer, place: Place, time: float = 0.0, calm: float = 0.0) -> Pile:
+    """Porosity, slope and force of the pile as it lies."""
+    step, found = STEP * layer.physics.thickness, {}
+    for key, front in place.fronts.items():
+        if (profile := _profile(layer, key, front, place.side, step)) is not None:
+            found[key] = profile
+    ice, pores = sum(p.ice for p in found.values()), sum(p.pores for p in found.values())
     on_sheet = sum(float(layer.sheet_forces(key)[:, 2].sum()) for key in layer.sections)
+    distance = [place.distance(p.x, layer.centre(key)) for key, p in found.items()]
     return Pile(
         blocks=len(layer.blocks),
         volume=layer.mass / layer.physics.rho_i,
         mass=layer.mass,
         porosity=pores / (ice + pores) if ice > 0.0 else nan,
-        slope=flank([p.flank for p in found], step),
-        depth=max((p.depth for p in found), default=0.0),
+        slope=flank(distance, [p.flank for p in found.values()], layer.physics.thickness * BIN),
+        depth=max((p.depth for p in found.values()), default=0.0),
         time=time,
         calm=calm,
-        force=side * (float(layer.load_on_structure[:, 2].sum()) + on_sheet),
+        force=place.side * (float(layer.load_on_structure[:, 2].sum()) + on_sheet),
     )
 
 
-def flank(profiles: list[Array], step: float) -> float:
-    """Angle of a flank [rad] from thicknesses of the pile (n,) of each section, from the structure's corner on [m].
+def flank(distance: Sequence[Array], thickness: Sequence[Array], step: float) -> float:
+    """Angle of a flank [rad] from thicknesses of the pile (n,) of each section and distances from the structure [m].
 
     A flank of slope s that ends at a distance L has A = s L^2 / 2 and B = s^2 L^3 / 3 as the integrals of its thickness
     d and of d^2, so L = 4 A^2 / (3 B) and s = 2 A / L^2: all of the flank counts and no single block. d is the mean of
-    the sections, which takes the roughness out of B. nan without a flank.
+    all sections at one distance, within ``step`` [m], which takes the roughness out of B. nan without a flank.
     """
-    longest = max((len(p) for p in profiles), default=0)
-    if not longest:
+    if not any(d.any() for d in thickness):
         return nan
-    d = np.mean([np.pad(p, (0, longest - len(p))) for p in profiles], axis=0)
-    area, square = float(d.sum()) * step, float((d**2).sum()) * step
-    if not area > 0.0:
-        return nan
+    at, d = np.concatenate(distance), np.concatenate(thickness)
+    number = ((at - at.min()) / step).astype(int)
+    samples = np.bincount(number)
+    mean = np.bincount(number, d)[samples > 0] / samples[samples > 0]
+    area, square = float(mean.sum()) * step, float((mean**2).sum()) * step
     length = 4.0 * area**2 / (3.0 * square)
     return float(np.arctan(2.0 * area / length**2))
 
@@ -77,7 +80,8 @@ class _Profile:
 
     ice: float  #: area [m^2]
     pores: float
-    flank: Array  #: (n,) thickness in front of the corner between sheet and structure, from there on [m]
+    x: Array  #: (n,) in front of the corner between sheet and structure, from there on [m]
+    flank: Array  #: (n,) thickness there [m]
     depth: float  #: greatest thickness [m]
 
 
@@ -101,8 +105,9 @@ def _profile(layer: RubbleLayer, key: int, corner: tuple[float, float], side: fl
     pores = ~covered & ~solid & (gz >= low[:, None])
     ice = sum(b.mass for b in blocks) / layer.physics.rho_i / layer.pitch
     thick = np.nan_to_num(top - low + step / 2)
-    before = thick[: len(x) - len(ahead)][::-1]
-    return _Profile(ice, float((covered | pores).sum()) * step**2 - ice, before, float(thick.max()))
+    before = slice(len(x) - len(ahead))
+    bulk = float((covered | pores).sum()) * step**2
+    return _Profile(ice, bulk - ice, x[before], thick[before], float(thick.max()))
 
 
 def _turned(polygon: Array, side: float) -> Array:

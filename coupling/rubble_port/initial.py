@@ -3,69 +3,58 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from coupling.interface import SheetEdge, SimulationError
 from coupling.rubble_port.failing import failing
 from coupling.rubble_port.port import RubblePort
-from rubble.initial import rest, settle
+from rubble.arrays import Array
+from rubble.heap import Place
+from rubble.initial import Initial, rest, settle
 from rubble.pile import Pile
 
+__all__ = ["Initial", "all_sections", "fill", "rest_again", "sections_of"]
 
-def front_sections(port: RubblePort) -> list[int]:
-    """Sections in whose middle plane the structure stands in the ice's way at the waterline."""
+Edges = dict[int, SheetEdge]
+OUTLINE = 0.1  #: greatest spacing of points along the structure's outline, in thicknesses
+
+
+def all_sections(port: RubblePort) -> range:
+    """Sections of the whole width of the sheet."""
     layer = port.layer
-    half = min(port.structure.half_width, layer.domain.y_max)
-    keys = range(layer.key_at(-half), layer.key_at(half) + 1)
-    return [k for k in keys if abs(y := layer.centre(k)) < half and np.isfinite(port.structure.face_x(y, 0.0))]
+    half = layer.domain.y_max - layer.pitch
+    return range(layer.key_at(-half), layer.key_at(half) + 1)
 
 
-@dataclass(frozen=True)
-class Initial:
-    """What is asked of initial rubble."""
-
-    volume: float  #: of ice [m^3]
-    porosity: float
-    lengths: tuple[float, float]  #: of the blocks, least and greatest, in thicknesses
-    seed: int
+def sections_of(port: RubblePort, asked: Initial, edges: Edges) -> list[int]:
+    """Of ``edges``, those in which the heap lies."""
+    with failing():
+        return sorted(asked.flanks(port.layer, _place(port, edges)))
 
 
-def fill(port: RubblePort, asked: Initial, edges: dict[int, SheetEdge]) -> Pile:
+def fill(port: RubblePort, asked: Initial, edges: Edges) -> Pile:
     """Settles new rubble in the sections of ``edges``."""
     _hold(port, edges)
-    corners, above = _corners(port, edges), not port.structure.faces_down
-
-    def pile() -> Pile:
-        return settle(
-            port.layer,
-            corners,
-            asked.volume,
-            asked.seed,
-            porosity=asked.porosity,
-            lengths=asked.lengths,
-            above=above,
-        )
-
-    settled = _settled(port, pile)
+    settled = _settled(port, lambda: settle(port.layer, _place(port, edges), asked))
     _lies_under_known_sheet(port, edges)
     return settled
 
 
-def rest_again(port: RubblePort, edges: dict[int, SheetEdge]) -> Pile:
+def rest_again(port: RubblePort, edges: Edges) -> Pile:
     """The rubble comes to rest once more, under a sheet that has moved."""
     _hold(port, edges)
-    return _settled(port, lambda: rest(port.layer, _corners(port, edges), above=not port.structure.faces_down))
+    return _settled(port, lambda: rest(port.layer, _place(port, edges)))
 
 
-def _hold(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
+def _hold(port: RubblePort, edges: Edges) -> None:
     """The sheet lies still and yields to nothing."""
     still = {k: replace(e, velocity=np.zeros_like(e.velocity)) for k, e in edges.items()}
     port.set_sheet(still, port.forces_on_sheet(), np.zeros((2, len(still), len(still))))
 
 
-def _lies_under_known_sheet(port: RubblePort, edges: dict[int, SheetEdge]) -> None:
+def _lies_under_known_sheet(port: RubblePort, edges: Edges) -> None:
     """The rubble knows the front of the sheet only; what has spread behind it rises, or falls, past it."""
     rear = {k: float(e.x[-1]) for k, e in edges.items()}
     layer = port.layer
@@ -85,9 +74,19 @@ def _settled(port: RubblePort, pile: Callable[[], Pile]) -> Pile:
     return settled
 
 
-def _corners(port: RubblePort, edges: dict[int, SheetEdge]) -> dict[int, tuple[float, float]]:
-    """The corner that rubble fills: x of structure or front at the side of the sheet where it lies, and z [m]."""
-    half = (-0.5 if port.structure.faces_down else 0.5) * port.physics.thickness
+def _place(port: RubblePort, edges: Edges) -> Place:
+    """Rubble lies at the side of the sheet to which it is pushed, from its front or the structure on."""
+    above = not port.structure.faces_down
+    half = (0.5 if above else -0.5) * port.physics.thickness
     at = {k: float(e.z[0]) + half for k, e in edges.items()}
     face = {k: float(port.structure.face_x(port.layer.centre(k), at[k])) for k in edges}
-    return {k: (min(face[k], e.front), at[k]) for k, e in edges.items() if np.isfinite(face[k])}
+    fronts = {k: (e.front if np.isnan(face[k]) else min(face[k], e.front), at[k]) for k, e in edges.items()}
+    return Place(fronts, _outline(port, float(np.median(list(at.values())))), above)
+
+
+def _outline(port: RubblePort, z: float) -> Array:
+    """(n, 2) x and y of the structure's face at a height [m]."""
+    half = min(port.structure.half_width, port.layer.domain.y_max)
+    y = np.linspace(-half, half, 1 + 2 * int(np.ceil(half / (OUTLINE * port.physics.thickness))))
+    outline = np.column_stack([port.structure.face_x(y, z), y])
+    return outline[np.isfinite(outline[:, 0])]

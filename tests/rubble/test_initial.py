@@ -1,4 +1,4 @@
-"""Initial rubble: a stated volume of a stated porosity comes to rest at the ice; its slope is a result."""
+"""Initial rubble: a stated volume of a stated porosity comes to rest round the structure; its slope is a result."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,8 @@ import pytest
 from coupling.structure import cone
 from rubble.cut import revolved
 from rubble.domain import Domain
-from rubble.initial import CALM, PACKED, settle
+from rubble.heap import Place, heap
+from rubble.initial import CALM, PACKED, Initial, settle
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
@@ -18,9 +19,18 @@ SHAPE = cone(np.radians(45), 15.0, 9.0, top=5.0, toe_depth=20.0)
 UNDER = -H * RHO_I / RHO_W
 
 
-def pile(volume, sections, seed=2018, mu=0.1, threads=1, porosity=0.3, pitch=PITCH, lengths=(0.5, 1.5), **more):
+def pile(volume, sections, seed=2018, mu=0.1, threads=1, pitch=PITCH, h=H, physics=None, **asked):
+    """Rubble under the edge of a sheet that touches the cone all round, where a section has a cone before it."""
+    under = -h * RHO_I / RHO_W
     physics = RubblePhysics(
-        rho_i=RHO_I, rho_w=RHO_W, thickness=H, mu_ice_ice=mu, restitution=0.1, added_mass=0.2, added_inertia=0.2, **more
+        rho_i=RHO_I,
+        rho_w=RHO_W,
+        thickness=h,
+        mu_ice_ice=mu,
+        restitution=0.1,
+        added_mass=0.2,
+        added_inertia=0.2,
+        **(physics or {}),
     )
     layer = RubbleLayer(
         physics,
@@ -31,14 +41,21 @@ def pile(volume, sections, seed=2018, mu=0.1, threads=1, porosity=0.3, pitch=PIT
     )
     fronts = {}
     for key in sections:
-        face = float(SHAPE.face_x(layer.centre(key), UNDER))
+        face = float(SHAPE.face_x(layer.centre(key), under))
         x = np.arange(face - 0.5, face - 60.0, -2.8)
         layer.set_sheet(
             key,
-            SheetMotion(x, np.full(len(x), UNDER + H / 2), x[0] + 0.5, np.zeros((len(x), 2)), H),
+            SheetMotion(x, np.full(len(x), under + h / 2), x[0] + 0.5, np.zeros((len(x), 2)), h),
         )
-        fronts[key] = (face, UNDER)
-    return layer, settle(layer, fronts, volume, seed, porosity=porosity, lengths=lengths)
+        fronts[key] = (face, under)
+    return layer, settle(layer, Place(fronts, foot(SHAPE, under)), Initial(volume, seed, **asked))
+
+
+def foot(shape, z):
+    """The outline of a structure at a height."""
+    y = np.linspace(-20.0, 20.0, 401)
+    points = np.column_stack([shape.face_x(y, z), y])
+    return points[np.isfinite(points[:, 0])]
 
 
 def check(found, volume):
@@ -94,7 +111,8 @@ def test_rubble_that_rises_beside_the_sheet_has_no_profile():
     """A little rubble with nothing over it: neither porosity nor slope, and no error."""
     physics = RubblePhysics(rho_i=RHO_I, rho_w=RHO_W, thickness=H)
     layer = RubbleLayer(physics, PITCH)
-    found = settle(layer, {0: (-15.0, UNDER - 5.0)}, 20.0, 1)
+    place = Place({0: (-15.0, UNDER - 5.0)}, np.array([[-15.0, 0.0]]))
+    found = settle(layer, place, Initial(20.0, 1))
     assert np.isnan(found.porosity)
     assert np.isnan(found.slope)
     assert found.depth == 0.0
@@ -136,12 +154,50 @@ def test_the_angle_of_a_flank_is_that_of_the_wedge(angle):
     """Also where blocks stick out of it: one corner a thickness deep moves it by less than half a degree."""
     x, slope = np.arange(0.05, 40.0, 0.1), np.tan(np.radians(angle))
     wedge = np.maximum(12.0 - slope * x, 0.0)
-    assert np.degrees(flank([wedge], 0.1)) == pytest.approx(angle, abs=0.05)
+    assert np.degrees(flank([x], [wedge], 0.1)) == pytest.approx(angle, abs=0.05)
     rough = [np.where(wedge > 0.0, wedge + shift, 0.0) for shift in (-0.5, 0.0, 0.5)]
-    assert np.degrees(flank(rough, 0.1)) == pytest.approx(angle, abs=0.3)
+    assert np.degrees(flank([x] * 3, rough, 0.1)) == pytest.approx(angle, abs=0.3)
     corner = wedge + np.where(np.abs(x - 3.0) < 0.5, H, 0.0)
-    assert np.degrees(flank([corner, wedge, wedge, wedge, wedge], 0.1)) == pytest.approx(angle, abs=0.5)
-    assert np.isnan(flank([], 0.1))
+    assert np.degrees(flank([x] * 5, [corner, wedge, wedge, wedge, wedge], 0.1)) == pytest.approx(angle, abs=0.5)
+    assert np.isnan(flank([], [], 0.1))
+
+
+def test_a_heap_round_a_cone_falls_away_from_it_on_all_sides():
+    """Its volume is that of a ring with the section of a wedge (Pappus); a heap before a plane is a wedge."""
+    y, tangent = {k: float(k) for k in range(-40, 41)}, np.tan(np.radians(30.0))
+    angle = np.linspace(0.5 * np.pi, 1.5 * np.pi, 2001)
+    ring = np.column_stack([12.0 * np.cos(angle), 12.0 * np.sin(angle)])
+    front = {k: (-np.sqrt(max(144.0 - v * v, 0.0)), -2.5) for k, v in y.items()}
+    half_ring = np.pi * (12.0 * 10.0**2 / 2.0 + 10.0**3 / 6.0) * tangent  # integral of (10 - s)(12 + s) over s
+    flanks = heap(Place(front, ring), y, half_ring, np.radians(30.0), 1.0)
+    assert sum(f.area for f in flanks.values()) == pytest.approx(half_ring, rel=1e-9)
+    assert max(f.thickness.max() for f in flanks.values()) == pytest.approx(10.0 * tangent, rel=0.01)
+    assert max(flanks) == 21
+    reach = {k: -float(f.x[f.thickness > 0.0].min()) for k, f in flanks.items()}
+    assert [reach[k] for k in (0, 10, -10)] == pytest.approx([22.0, np.sqrt(384.0), np.sqrt(384.0)], abs=0.1)
+    wall = Place({k: (-12.0, -2.5) for k in y}, np.column_stack([np.full(801, -12.0), np.linspace(-40.0, 40.0, 801)]))
+    wedge = heap(wall, y, 81.0 * 50.0 * tangent, np.radians(30.0), 1.0)
+    assert {round(f.area / (50.0 * tangent), 6) for f in wedge.values()} == {1.0}
+
+
+@pytest.mark.parametrize(("slope", "mu"), [(20.0, 0.1), (40.0, 0.7)])
+def test_settled_rubble_is_as_far_from_the_structure_as_the_heap(slope, mu):
+    """On the mean of its ice, within a quarter of a thickness, where friction can hold it; a flatter one is farther."""
+    sections, asked = range(-4, 5), Initial(1500.0, 3, slope=np.radians(slope))
+    layer, _ = pile(1500.0, sections, seed=3, mu=mu, pitch=0.5 * PITCH, slope=np.radians(slope))
+    place = Place({k: (float(SHAPE.face_x(layer.centre(k), UNDER)), UNDER) for k in sections}, foot(SHAPE, UNDER))
+    ice = [place.distance(b.position[:1], float(b.position[1]))[0] for b in layer.blocks]
+    at = np.average(ice, weights=[b.mass for b in layer.blocks])
+    assert at == pytest.approx(middle(asked, layer, place), abs=0.25 * H)
+    other = Initial(1500.0, 3, slope=np.radians(60.0 - slope))
+    assert at != pytest.approx(middle(other, layer, place), abs=0.5 * H)
+
+
+def middle(asked, layer, place):
+    """Mean distance of a heap from the structure [m]."""
+    flanks = asked.flanks(layer, place)
+    at = np.concatenate([place.distance(f.x, layer.centre(k)) for k, f in flanks.items()])
+    return np.average(at, weights=np.concatenate([f.thickness for f in flanks.values()]))
 
 
 @pytest.mark.slow
@@ -149,7 +205,7 @@ def test_a_pile_in_shallow_water_grounds_and_spreads():
     """Three quarters as deep as it would be: nothing below the bed, a flatter pile, the sheet lifted as ever."""
     _, deep = pile(450.0, (0,))
     depth = -UNDER + 0.75 * deep.depth
-    layer, found = pile(450.0, (0,), depth=depth)
+    layer, found = pile(450.0, (0,), physics={"depth": depth})
     assert min(b.outline[:, 1].min() for b in layer.blocks) > -depth - 0.02 * H
     assert found.depth <= 0.75 * deep.depth + 0.05 * H
     assert found.force == pytest.approx(450.0 * (RHO_W - RHO_I) * 9.81 + layer.budget["sea_bed"][1], rel=0.03)
@@ -174,7 +230,7 @@ def on_top(volume, sections, seed=2018, mu=0.3):
         x = np.arange(front - 1.4, front - 60.0, -2.8)
         layer.set_sheet(key, SheetMotion(x, np.full(len(x), FREEBOARD - H / 2), front, np.zeros((len(x), 2)), H))
         fronts[key] = (min(float(UP.face_x(layer.centre(key), FREEBOARD)), front), FREEBOARD)
-    return layer, settle(layer, fronts, volume, seed, above=True)
+    return layer, settle(layer, Place(fronts, foot(UP, FREEBOARD), above=True), Initial(volume, seed))
 
 
 def test_before_an_upward_cone_rubble_lies_on_the_sheet_with_its_dry_weight():
