@@ -2,7 +2,8 @@
 
 An *encounter* is one build-up and break of the sheet: from the first touch, or from the end of the encounter before,
 to the drop of the load after the sheet has broken off. Several pieces that break off in one drop are one encounter, and
-so are those that follow before the load has built up again.
+so are those that follow before the load has built up again. What builds up to less than half of the first encounter's
+load and breaks, a splinter or a corner, belongs to the level between encounters.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from coupling.interface import NS, Array, BoolArray, Event, IntArray
 
 Kinds = str | Sequence[str]
 DROP = 0.5  #: share of an encounter's largest load below which the load has dropped, and from which it builds up
+LEAST = 0.5  #: share of the first encounter's largest load that a later one reaches
 
 
 @dataclass(frozen=True)
@@ -110,6 +112,8 @@ def encounters(run: RunData, event: Kinds = "circumferential", component: str = 
         if found and (now <= found[-1].end or not _built_up(load[begin : now + 1])):
             found[-1] = replace(found[-1], end=max(found[-1].end, now))  # it goes on breaking
             begin = found[-1].end + 1
+            continue
+        if found and load[begin : now + 1].max() < LEAST * load[found[0].begin : found[0].end + 1].max():
             continue
         until = at[k + 1] if k + 1 < len(at) else len(load)
         low = np.flatnonzero(load[now:] < DROP * load[begin : now + 1].max())

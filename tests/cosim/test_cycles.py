@@ -71,6 +71,17 @@ def test_pieces_that_follow_before_the_load_builds_up_belong_to_the_encounter(at
     assert found[which].end == round(at / DT) - 1
 
 
+@pytest.mark.parametrize(("share", "counts"), [(0.4, False), (0.6, True)])
+def test_a_build_up_to_less_than_half_of_the_first_is_no_encounter(share, counts):
+    """It neither ends the one before nor begins the next, whose build-up it interrupts."""
+    run = saw()
+    second = (run.t > 7.0 + 1e-9) & (run.t <= 13.0 + 1e-9)
+    run.load[second, 0, 0] *= share * 6.0 / 8.0  # of 6 MN and 1 MN of sliding load
+    found = encounters(run)
+    assert [round(DT * (e.event + 1), 6) for e in found] == [7.0, *[13.0] * counts, 19.0, 25.0]
+    assert cycles.encounter_load(run, 2 + counts) == pytest.approx(8e6, rel=0.01)
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 4])
 def test_the_largest_load_of_each_encounter(n):
     run = saw()
