@@ -22,6 +22,7 @@ point, rotation included.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -84,6 +85,9 @@ class OverlapContact:
         self.lead = np.zeros(len(nodes)) if lead is None else lead  #: of the front ahead of its node, (m,) [m]
         self._sample_y = y[:, None] + width[:, None] * self._dy
 
+    def find(self, t: float, displacement: Callable[[], Array]) -> None:
+        """Called where nodes have come into the front; ``displacement`` (m, 3) of the points of contact as they are."""
+
     def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
         """L at the sample points (m, SAMPLES) [m] and the outward normal of the structure there (m, SAMPLES, 3)."""
         z = self.touching_z + y[:, 2]
@@ -123,9 +127,9 @@ class OverlapContact:
         """Pressure [Pa] at overlaps L (k, SAMPLES) of the nodes `rows`, and its derivative to L [Pa/m]."""
         return np.full(L.shape, self._law.strength), np.zeros(L.shape)
 
-    def close_window(self, t: float, y: Array) -> Array:
+    def close_window(self, t: float, displacement: Callable[[], Array]) -> Array:
         """Called at the end of a window: depth to which the touching edge is crushed, (m, SAMPLES) [m]."""
-        return self.overlap(t, y)[0]
+        return self.overlap(t, displacement())[0]
 
     def _direction(self, normal: Array, sin: Array, rows: IntArray) -> Array:
         """Normal plus friction, (k, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
@@ -173,11 +177,13 @@ class CrushingContact(OverlapContact):
     The pressure grows with the closure L - c of the intact ice behind the crushed depth c, elastically with E / d,
     to the crushing strength of the ice. Beyond it ice is crushed away and c follows: the edge takes the shape of the
     structure, as section 6.3.2 of the thesis recommends. An edge that has let go meets the structure again only where
-    it still reaches it.
+    it still reaches it. What overlaps the structure already when it comes into the front, because the ice before it has
+    left, counts as crushed: nothing has pressed it there, so it presses with what closes from then on.
 
     The face of contact reaches from the touching edge, h / 2 from the middle of the ice, down to the depth
     s = min(L tan a, h) below it, so the force acts h / 2 - s / 2 from the middle. Its moment bends a downward-breaking
-    edge up, against the vertical force. c and the height are set at the end of each window.
+    edge up, against the vertical force. c and the height are set at the end of each window; where the edge has turned,
+    the overlap is another one at another height, and c moves with it: the closure is what it was.
     """
 
     def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array, lead: Array | None = None) -> None:
@@ -185,8 +191,19 @@ class CrushingContact(OverlapContact):
         known: dict[int, Array] = getattr(self, "_known", {})
         super().set_edge(nodes, x, y, width, lead)
         new = np.append(np.zeros(SAMPLES), self.face * 0.5 * self._h)
+        self._unseen = np.array([n not in known for n in nodes.tolist()], dtype=bool)
         kept = np.array([known.get(n, new) for n in nodes.tolist()]).reshape(-1, SAMPLES + 1)
         self._keep(kept[:, :-1], kept[:, -1])
+
+    def find(self, t: float, displacement: Callable[[], Array]) -> None:
+        """Nodes that were not in front before are crushed as far as they overlap the structure, where they bear now."""
+        new = self._unseen
+        if not new.any():
+            return
+        self._keep(self._crushed, np.where(new, self._bearing(*self.overlap(t, displacement())), self.height))
+        crushed = np.maximum(self.overlap(t, displacement())[0], 0.0)
+        self._keep(np.where(new[:, None], crushed, self._crushed), self.height)
+        self._unseen = np.zeros_like(new)
 
     def _keep(self, crushed: Array, height: Array) -> None:
         self._crushed, self.height = crushed, height
@@ -198,11 +215,15 @@ class CrushingContact(OverlapContact):
         bearing = (elastic > 0.0) & (elastic < self._law.strength)
         return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
 
-    def close_window(self, t: float, y: Array) -> Array:
+    def close_window(self, t: float, displacement: Callable[[], Array]) -> Array:
         """The crushed depth follows the overlap, less the closure at full strength; so does the height."""
-        L, normal = self.overlap(t, y)
-        self._keep(np.maximum(self._crushed, L - self._law.strength / self._law.stiffness), self._bearing(L, normal))
-        return self._crushed.copy()
+        L, normal = self.overlap(t, displacement())
+        crushed = np.maximum(self._crushed, L - self._law.strength / self._law.stiffness)
+        self._keep(crushed, self._bearing(L, normal))
+        there = self.overlap(t, displacement())[0]
+        moved_by = np.where((L > 0.0) & (there > 0.0), there - L, 0.0)
+        self._keep(np.maximum(crushed + moved_by, 0.0), self.height)
+        return crushed
 
     def _bearing(self, L: Array, normal: Array) -> Array:
         """Height of the middle of the face of contact, (m,) [m]; an edge that has let go keeps its last one."""

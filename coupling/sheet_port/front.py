@@ -27,7 +27,7 @@ class Front:
         self.meets, tan = self._ahead(np.zeros(6))  #: columns in whose way the structure stands
         self.edge = CrushedEdge((g.nx, g.ny), g.d, ice.h, tan)
         self._crushed_before = 0.0  #: mass crushed off nodes that have left [kg]
-        self.renew()
+        self._set_edge()
 
     def _ahead(self, place: Array) -> tuple[BoolArray, Array]:
         """Columns before the structure where it is displaced by ``place`` (6,), and the steepness of its face there."""
@@ -53,6 +53,10 @@ class Front:
 
     def renew(self) -> None:
         """The nodes in front, after the lattice has lost some."""
+        self._set_edge()
+        self.contact.find(self._motion.t, self.displacement)
+
+    def _set_edge(self) -> None:
         g, front = self._sheet.grid, self._sheet.front
         self.edge.set_front(front)
         column = np.flatnonzero(self.meets & (front >= 0))
@@ -67,7 +71,7 @@ class Front:
         """Moves the floe back until its front just touches the structure, before a run."""
         overlap, _ = self.contact.overlap(0.0, self.displacement())
         self._motion.setback += max(float(overlap.max(initial=0.0)), 0.0)
-        self.renew()
+        self._set_edge()
 
     def displacement(self) -> Array:
         """Of the points of contact in the drifting frame, (m, 3) [m]."""
@@ -91,7 +95,7 @@ class Front:
         """Takes the overlapped ice off the edge, and rows of which nothing is left out of the lattice."""
         if not len(self.contact.nodes):
             return
-        self.edge.crush(self._column, self.contact.close_window(self._motion.t, self.displacement()))
+        self.edge.crush(self._column, self.contact.close_window(self._motion.t, self.displacement))
         spent = self.edge.spent()
         if len(spent):
             nodes = self.edge.front[spent] * self._sheet.grid.ny + spent

@@ -97,18 +97,47 @@ def test_intact_ice_presses_elastically_then_at_its_strength():
 def test_crushed_ice_does_not_come_back():
     """After crushing half a metre the edge lets go when the ice moves back by the elastic closure, and stays apart."""
     law = crushing()
-    depth = law.close_window(5.0, np.zeros((1, 3)))
+    depth = law.close_window(5.0, lambda: np.zeros((1, 3)))
     np.testing.assert_allclose(depth, 0.5 - 4e6 / 3e9)
     back = np.array([[-2e-3, 0.0, 0.0]])
     assert not law.evaluate(5.0, back)[0].any()
     assert contact(plane_slope(np.pi / 4)).evaluate(5.0, back)[0].any()  # the thesis's contact presses on
 
 
+def test_ice_that_is_found_in_the_structure_presses_with_what_closes_from_then_on():
+    """Half a metre deep when the ice before it has left: no force, where one that is new to `find` has all of it."""
+    law, y = crushing(0.5), np.zeros((1, 3))
+    assert law.evaluate(0.0, y)[0].any()
+    law.find(0.0, lambda: y)
+    assert not law.evaluate(0.0, y)[0].any()
+    assert law.height[0] == pytest.approx(0.5 * H - 0.25, rel=1e-9)
+    pressed, _ = law.evaluate(0.01, y)  # 1 mm more, on the face of 0.501 m
+    assert -pressed[0, 0] == pytest.approx(3e9 * 1e-3 * 0.501 * np.sqrt(2) * 2.0 * 1.1 / np.sqrt(2), rel=1e-9)
+    law.set_edge(law.nodes, np.array([law._x[0]]), np.array([0.0]), np.array([2.0]))
+    law.find(0.01, lambda: y)
+    np.testing.assert_array_equal(law.evaluate(0.01, y)[0], pressed)  # it is known now
+
+
+@pytest.mark.parametrize("turned", [-0.1, 0.1])
+def test_the_closure_of_an_edge_that_has_turned_stays_when_its_point_of_action_moves(turned):
+    """That point lies some 0.2 m lower after the window, so 20 mm from where it was along the drift."""
+    law = crushing()
+
+    def displacement():
+        return np.array([[turned * law.height[0], 0.0, 0.0]])
+
+    L, _ = law.overlap(5.0, displacement())
+    law.close_window(5.0, displacement)
+    there, _ = law.overlap(5.0, displacement())
+    assert np.abs(there - L).min() > 0.015
+    np.testing.assert_allclose(there - law._crushed, 4e6 / 3e9, rtol=1e-9)
+
+
 def test_nodes_that_stay_in_front_keep_their_damage():
     law = crushing()
-    law.close_window(5.0, np.zeros((1, 3)))
+    law.close_window(5.0, lambda: np.zeros((1, 3)))
     law.set_edge(np.array([3, 7]), np.array([-1.0, 0.0]), np.array([2.0, 0.0]), np.array([2.0, 2.0]))
-    depth = law.close_window(0.0, np.zeros((2, 3)))
+    depth = law.close_window(0.0, lambda: np.zeros((2, 3)))
     assert depth[1].min() > 0.4
     assert depth[0].max() < depth[1].min()
 
@@ -125,7 +154,7 @@ def test_ice_that_hangs_over_the_side_of_the_cone_is_pressed_where_it_touches_on
 
 def test_the_thesis_contact_acts_at_middle_thickness():
     law = contact(plane_slope(np.pi / 4))
-    law.close_window(5.0, np.zeros((1, 3)))
+    law.close_window(5.0, lambda: np.zeros((1, 3)))
     np.testing.assert_array_equal(law.height, [0.0])
 
 
@@ -139,7 +168,7 @@ def test_a_crushing_contact_acts_at_the_middle_of_its_face(degrees, breaking, fa
     law.set_edge(np.array([7]), np.array([float(structure.face_x(0.0, z))]), np.zeros(1), np.array([2.0]))
     assert law.height[0] == pytest.approx(face * 1.5, rel=1e-12)
     for t in (2.0, 10.0, 100.0):
-        law.close_window(t, np.zeros((1, 3)))
+        law.close_window(t, lambda: np.zeros((1, 3)))
         assert law.height[0] == pytest.approx(face * 0.5 * (H - min(0.1 * t * tan, H)), abs=1e-9)
 
 
@@ -150,23 +179,23 @@ def test_on_a_round_structure_the_height_is_the_mean_over_the_face():
     law.set_edge(np.array([7]), np.array([front]), np.array([6.0]), np.array([2.8]))
     L, _ = law.overlap(3.0, np.zeros((1, 3)))
     assert L.min() == 0.0 < L.max()
-    law.close_window(3.0, np.zeros((1, 3)))
+    law.close_window(3.0, lambda: np.zeros((1, 3)))
     assert law.height[0] == pytest.approx(0.5 * H - 0.5 * (L**2).sum() / L.sum(), rel=1e-9)
 
 
 def test_an_edge_that_lets_go_and_stays_in_front_keeps_its_height():
     law = crushing()
-    law.close_window(5.0, np.zeros((1, 3)))
-    law.close_window(5.0, np.array([[-5.0, 0.0, 0.0]]))
+    law.close_window(5.0, lambda: np.zeros((1, 3)))
+    law.close_window(5.0, lambda: np.array([[-5.0, 0.0, 0.0]]))
     law.set_edge(np.array([3, 7]), np.array([-9.0, 0.0]), np.array([2.0, 0.0]), np.array([2.0, 2.0]))
     np.testing.assert_allclose(law.height, [1.5, 1.25])
 
 
 def test_a_contact_set_back_has_its_damage_and_height_again():
     law = crushing()
-    law.close_window(2.0, np.zeros((1, 3)))
+    law.close_window(2.0, lambda: np.zeros((1, 3)))
     saved, force, height = remember(law), law.evaluate(2.5, np.zeros((1, 3)))[0], law.height.copy()
-    law.close_window(9.0, np.zeros((1, 3)))
+    law.close_window(9.0, lambda: np.zeros((1, 3)))
     assert law.height[0] < height[0] - 0.1
     recall(saved)
     np.testing.assert_array_equal(law.height, height)
