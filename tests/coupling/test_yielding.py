@@ -45,11 +45,12 @@ def test_heavy_rubble_lies_still_under_a_light_sheet():
     """The lift swung between 0 and 8 MN when the rubble knew the stiffness of single nodes for a part of the window."""
     scheduler = build(load_scenario("scenarios/van_vliet_2018_floe_165m", HEAVY))
     start = scheduler.rubble.forces_on_sheet().force[:, 2].sum()
+    on_cone = scheduler.rubble.layer.wrench_on_structure[2]  # of what has slipped into the gap before it
     lifts = []
     while scheduler.t_ns < 2_000_000_000:
         scheduler.macro_step()
         lifts.append(scheduler.rubble.forces_on_sheet().force[:, 2].sum())
-    assert start == pytest.approx(1500 * 160 * 9.81, rel=0.1)
+    assert start + on_cone == pytest.approx(1500 * 160 * 9.81, rel=0.05)
     assert np.array(lifts) == pytest.approx(start, rel=0.1)
     assert scheduler.ledger.mass_error < 1e-14
 
