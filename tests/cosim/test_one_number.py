@@ -113,7 +113,7 @@ def test_exported_events_have_the_loads_of_info_and_those_of_the_instant(cosim, 
     import pandas as pd
     import xarray as xr
 
-    from cosim.api import open as opened
+    from cosim import open as opened
 
     path = run[1]
     told = json.loads(cosim("info", path, "--json")[1])["events"]
