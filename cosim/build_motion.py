@@ -23,13 +23,13 @@ def build_motion(scenario: Scenario) -> Motion | None:
     if m is None or not m.moves:
         return None
     path = (scenario.folder or Path()) / m.file
+    if m.kind == "fmu":
+        return _of_fmu(path, m.repeats)
     try:
         if m.kind == "spring":
             return _of_matrices(path) if m.file else _of_tables(m)
         if m.kind == "modal":
             return _of_modes(path)
-        if m.kind == "fmu":
-            return _of_fmu(path, m.repeats)
         if m.file:
             return _of_series(path, scenario.duration_ns / 1e9)
         return Prescribed.steady(np.array([*m.velocity, 0.0, 0.0, 0.0]), scenario.duration_ns / 1e9)

@@ -48,10 +48,10 @@ class Run:
 
     @cached_property
     def events(self) -> pd.DataFrame:
-        """All events: time [s], kind, load [N] as mean over the averaging time like the peaks, place [m], cause."""
+        """All events: time [s], kind, load [N] as mean over ``averaging`` and at the instant, place [m]."""
         from cosim.export.tables import events
 
-        return events(self.data.lasting)
+        return events(self.data)
 
     @cached_property
     def ledger(self) -> pd.DataFrame:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 CONVENTIONS = "CF-1.11"
 MEAN = {"cell_methods": "time: mean"}
 AXES = ["x", "y", "z"]
+FORCES = [f"f{axis}" for axis in AXES]
 
 
 def dataset(run: RunData) -> xr.Dataset:
@@ -60,11 +61,13 @@ def _events(run: RunData) -> dict[str, Any]:
     table = events(run)
     units = table.attrs["units"]
     text = {name for name, unit in units.items() if not unit}
+    about = {name: {"long_name": f"{name}, mean over event_averaging"} for name in FORCES}
+    about |= {f"{name}_instant": {"long_name": f"{name} at the instant of the event"} for name in FORCES}
     return {
         f"event_{name}": (
             ("event",),
             table[name].to_numpy(object if name in text else None),
-            {"units": units[name]} if units[name] else {},
+            ({"units": units[name]} if units[name] else {}) | about.get(name, {}),
         )
         for name in table.columns
     }

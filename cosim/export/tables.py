@@ -41,13 +41,31 @@ def loads(run: RunData, over: float = 0.0) -> pd.DataFrame:
 
 
 def events(run: RunData) -> pd.DataFrame:
-    """All events: time [s], kind, load [N] as the run has it, place [m], size, cause, and a line for people."""
+    """All events: time [s], kind, load [N], place [m], size, cause, and a line for people.
+
+    ``fx`` to ``fz`` are means over ``averaging`` [s], the loads of which the peaks are the largest; ``fx_instant`` to
+    ``fz_instant`` are those of the instant itself, as the recording holds them.
+    """
     import pandas as pd
 
-    units = {TIME: "s", "kind": "", **dict.fromkeys(AXES, "N"), "cells": "1", **dict.fromkeys("xyz", "m")}
-    units |= {"length": "m", "area": "m2", "cause": "", "text": ""}
+    instant = [f"{axis}_instant" for axis in AXES]
+    units = {TIME: "s", "kind": "", **dict.fromkeys(AXES, "N"), "averaging": "s", **dict.fromkeys(instant, "N")}
+    units |= {"cells": "1", **dict.fromkeys("xyz", "m"), "length": "m", "area": "m2", "cause": "", "text": ""}
     rows = [
-        (e.t_ns / NS, e.kind, *e.force, e.cells, *e.position, e.length, e.area, e.cause, e.text) for e in run.events
+        (
+            e.t_ns / NS,
+            e.kind,
+            *mean.force,
+            run.averaging,
+            *e.force,
+            e.cells,
+            *e.position,
+            e.length,
+            e.area,
+            e.cause,
+            e.text,
+        )
+        for e, mean in zip(run.events, run.lasting.events, strict=True)
     ]
     found = pd.DataFrame(rows, columns=list(units))
     found.attrs["units"] = units

@@ -84,9 +84,14 @@ class FmuMotion:
         before = self.displacement
         try:
             self._set(list(self._inputs.values()), [float(load[LOAD.index(name)]) for name in self._inputs])
-            self._fmu.doStep(currentCommunicationPoint=t, communicationStepSize=window)
+            done = self._fmu.doStep(currentCommunicationPoint=t, communicationStepSize=window)
         except Exception as error:
             raise SimulationError(f"t = {t:.3f} s: {self.path} stops: {' '.join(str(error).split())[:200]}") from None
+        if done is not None:  # FMI 3.0: nothing else says that a step was cut short
+            _, ends, early, reached = done
+            if ends or early:
+                what = f"returns early, at {reached:.3f} s" if early else "wants to end"
+                raise SimulationError(f"t = {t:.3f} s: {self.path} {what}; it has to take steps of {window:g} s")
         self._read()
         given = np.array([f"{name}_rate" in self._outputs for name in FREEDOMS])
         self.velocity = np.where(given, self.velocity, (self.displacement - before) / window)

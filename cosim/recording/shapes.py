@@ -9,18 +9,18 @@ import numpy as np
 
 from coupling.interface import Array, BoolArray, IntArray, Phase
 
-#: one colour per phase, in pictures, curves and the legend
-PHASE_RGB = {Phase.BREAKING: (86, 180, 233), Phase.ROTATING: (240, 150, 40), Phase.SLIDING: (0, 190, 140)}
-STRUCTURE_RGB = (214, 178, 72)
-CRACKED_RGB = (38, 56, 92)
-_STOPS = np.array([0.0, 0.35, 0.7, 1.0])  #: utilisation
-_RGB = np.array([(226, 238, 247), (126, 190, 232), (244, 178, 92), (214, 52, 48)], float)
+#: one colour per phase, in pictures, curves, reports and the legend (Okabe and Ito 2008)
+PHASE_RGB = {Phase.BREAKING: (0, 114, 178), Phase.ROTATING: (230, 159, 0), Phase.SLIDING: (0, 158, 115)}
+STRUCTURE_RGB = (201, 178, 122)
+CRACKED_RGB = (20, 32, 44)
+#: of the utilisation from 0 to 1, at even distances
+UTILISATION_RGB = ((238, 245, 250), (251, 217, 165), (240, 148, 60), (179, 32, 44), (77, 10, 28))
 
 
 def ice_colour(damage: Array, utilisation: Array) -> Array:
-    """RGB 0-255 of sheet nodes: pale ice, blue, orange to red as utilisation goes to 1; cracked ice is dark."""
-    u = np.clip(np.nan_to_num(utilisation), 0, 1)
-    rgb = np.stack([np.interp(u, _STOPS, _RGB[:, k]) for k in range(3)], axis=1)
+    """RGB 0-255 of sheet nodes: pale ice, orange, dark red as utilisation goes to 1; cracked ice is near to black."""
+    u, stops = np.clip(np.nan_to_num(utilisation), 0, 1), np.linspace(0.0, 1.0, len(UTILISATION_RGB))
+    rgb = np.stack([np.interp(u, stops, colour) for colour in zip(*UTILISATION_RGB, strict=True)], axis=1)
     dark = np.clip(damage, 0, 1)[:, None]
     return rgb * (1 - dark) + np.array(CRACKED_RGB) * dark
 

@@ -28,6 +28,7 @@ from cosim.scenario.scenario import Scenario
 from coupling.interface import Event, Frame
 
 VIEWS = 60  #: in a run, of what stock viewers draw
+VIEW_TIMES = 2.0  #: at least between two of them, in times (h / g)^0.5 of ice of thickness h
 
 
 class Recorder:
@@ -148,10 +149,10 @@ class Recorder:
         return first or last or bool(frame.events) or due
 
     def _with_view(self, frame: Frame) -> bool:
-        """At the start, at the end, and evenly between."""
+        """At the start, at the end, and evenly between; see `view_every_ns`."""
         due = frame.t_ns >= min(self._view_ns, self._info.duration_ns)
         if due:
-            self._view_ns = frame.t_ns + self._info.duration_ns // VIEWS
+            self._view_ns = frame.t_ns + view_every_ns(self._info)
         return due
 
     def _register(self) -> None:
@@ -171,6 +172,15 @@ class Recorder:
             if data is not None:
                 self._count[topic] = self._count.get(topic, 0) + 1
                 self._do(self._writer.add_message, self._number[topic], t_ns, data, t_ns, self._count[topic])
+
+
+def view_every_ns(info: RunInfo) -> int:
+    """Between two pictures for stock viewers: `VIEWS` in a run, and no more than ice moves, `VIEW_TIMES`.
+
+    They are the largest messages of a recording, and a short run would be made of nothing else.
+    """
+    least: float = VIEW_TIMES * (info.thickness / info.scenario.water.gravity) ** 0.5
+    return max(info.duration_ns // VIEWS, round(least * 1e9))
 
 
 def new_writer(file: Any) -> Any:

@@ -54,7 +54,8 @@ def draw(figure: Figure, run: RunData) -> None:
 def _focus(ax: Axes, terms: Array, total: Array) -> None:
     """Limits in which the load is seen; how much of the stacks sticks out is said in the picture."""
     up, down = np.maximum(terms, 0.0).sum(axis=0), np.minimum(terms, 0.0).sum(axis=0)
-    high, low = 1.15 * max(total.max(), 1e-9), min(1.15 * total.min(), -0.5 * total.max())
+    most, least = max(total.max(), 0.0), min(total.min(), 0.0)
+    high, low = max(1.15 * most, -0.5 * least, 1e-9), min(1.15 * least, -0.5 * most)
     out = np.mean((up > high) | (down < low))
     ax.set_ylim(low, high)
     if out > 0.0:

@@ -29,7 +29,7 @@ def blueprint(run: RunData, end: float | None = None) -> rrb.Blueprint:
     f = _nearness(run)
     reach = 0.5 * float(run.metadata["spacing_m"]) * max(_nodes(run))
     above = _view(
-        "Sheet: blue to red = utilisation, dark = cracked",
+        "Sheet: pale to dark red = utilisation, black = cracked",
         (-0.5 * reach - 44 * f, -0.6 * reach - 46 * f, 0.4 * reach + 36 * f),
         (-0.3 * reach - 8 * f, -4 * f, -4 * f),
         (24, 34, 52),

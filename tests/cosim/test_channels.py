@@ -173,8 +173,17 @@ def test_no_blocks_and_no_cells_are_pictures_too(scenario, synthetic):
     assert (len(vertices), len(faces)) == (18, 0)
 
 
-def test_colours_go_from_ice_to_red():
-    low, high, cracked = shapes.ice_colour(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
-    assert low[2] > low[0]
-    assert high[0] > 4 * high[2]
+def test_colours_are_those_of_the_report():
+    """From ice over orange to dark red; cracked ice is near to black; phases, structure: the same numbers."""
+    from PIL import ImageColor
+
+    from cosim.show.ice import palette
+
+    use = np.linspace(0.0, 1.0, 17)
+    assert shapes.ice_colour(0.0 * use, use) == pytest.approx(255.0 * palette.colormap()(use)[:, :3], abs=1.5)
+    for phase, colour in palette.BLOCK.items():
+        assert ImageColor.getrgb(colour) == shapes.PHASE_RGB[phase]
+    assert list(palette.PHASE_COLOURS) == ["breaking", "rotating", "sliding"]
+    assert ImageColor.getrgb(palette.STRUCTURE) == shapes.STRUCTURE_RGB
+    low, cracked = shapes.ice_colour(np.array([0.0, 1.0]), np.array([0.0, 0.0]))
     assert cracked.sum() < low.sum() / 3

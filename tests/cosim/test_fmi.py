@@ -185,6 +185,57 @@ def test_an_fmu_is_the_structure(tower, file, near):
     assert np.abs(got - own).max() < near * np.abs(own).max()
 
 
+@pytest.fixture(scope="module")
+def tower_3(tmp_path_factory):
+    """build(name, back, limit, end): the FMU of FMI 3.0 of `tower_fmu_3.py`, with such an end."""
+    from pythonfmu3 import FmuBuilder
+
+    folder, text = tmp_path_factory.mktemp("tower3"), Path(__file__).with_name("tower_fmu_3.py").read_text()
+
+    def build_tower(name, back=True, limit="1e12", end="1e9"):
+        (folder / name).mkdir()
+        script, before = folder / name / f"{name}.py", list(sys.path)
+        script.write_text(text.replace("LIMIT, END = 1e12, 1e9", f"LIMIT, END = {limit}, {end}"))
+        made = FmuBuilder.build_FMU(script, folder / name / "out", canGetAndSetFMUState=back)
+        sys.path[:] = before
+        sys.modules.pop(name, None)
+        return (f"structure.motion.file='{made}'", "structure.motion.kind='fmu'")
+
+    return build_tower
+
+
+def test_an_fmu_of_fmi_3_is_the_structure_as_its_twin_of_fmi_2_is(tower, tower_3):
+    """To the last bit, with and without a way back; a tower four times as soft is another one."""
+    for back, twin in ((True, "back.fmu"), (False, "forth.fmu")):
+        two = loads("structure.motion.kind='fmu'", f"structure.motion.file='{tower / twin}'")
+        three = loads(*tower_3(f"three_{back}".lower(), back))
+        assert np.array_equal(three, two)
+    own = loads(*SOFT)
+    assert np.abs(three - own).max() > 1e-6 * np.abs(own).max()  # it cannot go back
+    softer = loads(*SOFT[:2], "structure.motion.surge.stiffness='1 MN/m'", SOFT[3])
+    assert np.abs(softer - own).max() > 1e-3 * np.abs(own).max()
+
+
+def test_windows_are_repeated_with_an_fmu_of_fmi_3(tower_3):
+    own = loads(*SOFT, "structure.motion.repeats=2")
+    got = loads(*tower_3("repeated"), "structure.motion.repeats=2")
+    assert np.abs(got - own).max() < 1e-9 * np.abs(own).max()
+
+
+@pytest.mark.parametrize(("limit", "end", "says"), [("1e3", "1e9", "stops"), ("1e12", "0.42", "wants to end")])
+def test_an_fmu_of_fmi_3_that_stops_ends_the_run_with_one_line(tower_3, limit, end, says):
+    with pytest.raises(SimulationError, match=says) as told:
+        loads(*tower_3(f"stops_{says[:2]}", limit=limit, end=end))
+    assert str(told.value).startswith("t = ")
+    assert "\n" not in str(told.value)
+
+
+def test_an_fmu_of_fmi_3_that_cannot_go_back_is_told_from_one_that_can(tower_3):
+    case = load_scenario(CASE, [*SHEET, *tower_3("forth3", False), "structure.motion.repeats=2"])
+    with pytest.raises(InputError, match="cannot get and set its state"):
+        build(case)
+
+
 def test_what_is_no_structure_is_refused(tower, ice_fmu, tmp_path):
     wrong = tmp_path / "wrong.fmu"
     wrong.write_bytes(b"PK no zip")

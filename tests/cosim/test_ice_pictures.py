@@ -145,3 +145,19 @@ def test_structures_of_every_kind_have_cut_waterline_and_tower(run):
         assert len(scene.cut(0.0)) >= 4, name
         assert len(scene.waterline()) >= 2
         assert (scene.tower() is None) == (name == "upward_plane")
+
+
+def test_ice_on_a_slope_that_looks_up_is_not_drawn_as_hidden(run, seen):
+    """Blocks lie on it; below a cone that looks down they are outlined."""
+    from dataclasses import replace
+
+    from matplotlib.figure import Figure
+
+    from cosim.scenario.loading import load_scenario
+
+    for name, hidden in (("first_cone", 1), ("icefloe_gla_upward_cone", 0), ("upward_plane", 0)):
+        texts = {"scenario.toml": load_scenario(name).resolved_toml()}
+        ax = Figure().add_subplot()
+        plan.draw_plan(ax, scene_of(replace(run, texts=texts)), seen["most load by sliding"])
+        outlined = [c for c in ax.collections if c.get_linestyle()[0][1] is not None and c.get_zorder() < 7]
+        assert len(outlined) == hidden, name

@@ -108,6 +108,38 @@ def test_no_event_has_a_larger_load_than_the_peak(run):
         assert max(abs(e[axis]) for e in found["events"]) <= abs(found["peaks"][axis]["value"])
 
 
+@pytest.mark.parametrize("form", ["csv", "parquet", "nc", "python"])
+def test_exported_events_have_the_loads_of_info_and_those_of_the_instant(cosim, run, tmp_path, form):
+    import pandas as pd
+    import xarray as xr
+
+    from cosim import open as opened
+
+    path = run[1]
+    told = json.loads(cosim("info", path, "--json")[1])["events"]
+    raw = read_run(path).events
+    if form == "python":
+        table = opened(path).events
+        table = table.rename(columns={n: f"{n} [{u}]" if u else n for n, u in table.attrs["units"].items()})
+    else:
+        out, more = tmp_path / f"e.{form}", () if form == "nc" else ("--table", "events")
+        assert cosim("export", path, "-o", out, *more)[0] == 0
+        if form == "nc":
+            with xr.open_dataset(out, engine="h5netcdf") as data:
+                assert "mean over event_averaging" in data["event_fx"].attrs["long_name"]
+                units = {n: v.attrs.get("units") for n, v in data.items() if n.startswith("event_")}
+                names = {n: f"{n.removeprefix('event_')} [{u}]" for n, u in units.items() if u}
+                table = pd.DataFrame({name: data[n].values for n, name in names.items()})
+        else:
+            table = getattr(pd, f"read_{form}")(out)
+    assert set(table["averaging [s]"]) == {0.3}
+    for k, axis in enumerate(("fx", "fy", "fz")):
+        assert table[f"{axis} [N]"].to_numpy() == pytest.approx([e[axis] for e in told], rel=1e-12)
+        assert table[f"{axis}_instant [N]"].to_numpy() == pytest.approx([e.force[k] for e in raw], rel=1e-12)
+    parted = np.abs(table["fx [N]"] - table["fx_instant [N]"]).max()
+    assert parted > 0.01 * np.abs(table["fx [N]"]).max()  # otherwise nothing is told apart here
+
+
 def test_the_averaging_time_follows_froude_from_the_thickness(tmp_path):
     assert averaging_time(1.0) == 0.5
     assert averaging_time(0.04) == pytest.approx(0.1, rel=1e-12)  # 1:25

@@ -99,9 +99,11 @@ def test_nothing_of_the_machine_is_written(run_file):
 @pytest.fixture
 def truncated(run_file, tmp_path):
     def cut(share):
+        """At a share of what the run wrote; a summary follows, and after it its place, in the footer."""
         data = run_file.read_bytes()
+        written = int.from_bytes(data[-28:-20], "little")
         path = tmp_path / "killed.mcap"
-        path.write_bytes(data[: int(len(data) * share)])
+        path.write_bytes(data[: int(written * share)])
         return path
 
     return cut

@@ -228,3 +228,21 @@ def test_statistics_are_those_of_the_means(run):
     fx = next(row for row in found["rows"] if row[0] == "Fx")
     assert float(fx[1]) == pytest.approx(run.lasting.component("fx").mean() / 1e6, abs=0.01)
     assert float(fx[-1]) == pytest.approx(8.0)
+
+
+def test_loads_that_press_down_have_quantiles_and_room_as_those_that_lift(run):
+    """On a slope that looks up Fz < 0: shares of the time are those of its size, and its stacks are seen."""
+    from matplotlib.figure import Figure
+
+    from cosim.show import budget_figure
+
+    down = dataclasses.replace(run, load=-run.load)
+    for name, up, other in zip(("Fx", "Fy", "Fz"), statistics(run)["rows"], statistics(down)["rows"], strict=False):
+        same = [float(text) for text in up[1:2] + up[3:]]
+        assert [-float(text) for text in other[1:2] + other[3:]] == pytest.approx(same), name
+    total, terms = np.array([-1.0, -4.0, -2.0]), np.array([[0.5, 0.4, 0.6], [-1.5, -4.4, -2.6]])
+    for sign in (1.0, -1.0):
+        ax = Figure().add_subplot()
+        budget_figure._focus(ax, sign * terms, sign * total)
+        assert sorted(np.abs(ax.get_ylim())) == pytest.approx([2.0, 4.6])
+        assert ax.get_title(loc="right") == ""  # nothing ends outside

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from coupling.interface import Phase
+from cosim.recording import shapes
+from coupling.interface import PHASES, Phase
 
 if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap
 
-PHASE_COLOURS = {"breaking": "#0072b2", "rotating": "#e69f00", "sliding": "#009e73"}
-BLOCK = {Phase.BREAKING: "#0072b2", Phase.ROTATING: "#e69f00", Phase.SLIDING: "#009e73"}
+
+def _hex(rgb: tuple[int, int, int]) -> str:
+    return "#" + bytes(rgb).hex()
+
+
+#: those of the recording, so that report, replay and stock viewers agree
+BLOCK = {phase: _hex(rgb) for phase, rgb in shapes.PHASE_RGB.items()}
+PHASE_COLOURS = {name: BLOCK[Phase(k)] for k, name in enumerate(PHASES)}
 HATCH = {Phase.BREAKING: "", Phase.ROTATING: "", Phase.SLIDING: "//"}
 ICE, WATER, WATERLINE = "#eef5fa", "#d3e3ee", "#4c7f9f"
-STRUCTURE, EDGE, FORCE, CRACK = "#c9b27a", "#2a3440", "#c0185a", "#14202c"
+STRUCTURE, CRACK = _hex(shapes.STRUCTURE_RGB), _hex(shapes.CRACKED_RGB)
+EDGE, FORCE = "#2a3440", "#c0185a"
 SHALLOW = "#b7c1cc"  #: cells that have begun to crack; `CRACK`: cracked through
-UTILISATION = ("#eef5fa", "#fbd9a5", "#f0943c", "#b3202c", "#4d0a1c")  #: from ice to dark as utilisation goes to 1
+UTILISATION = tuple(map(_hex, shapes.UTILISATION_RGB))  #: from ice to dark as utilisation goes to 1
 AGE = "cividis"  #: time of failure
 
 

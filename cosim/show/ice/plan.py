@@ -48,11 +48,8 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, fill: boo
         far = outline[::-1] + np.array([1e3 * scene.thickness, 0.0])
         outline = np.concatenate((outline, far)) * np.array([1.0, 10.0])
     structure = ax.add_patch(Polygon(outline, closed=True, fc=STRUCTURE, ec=EDGE, lw=0.8, zorder=above))
-    hidden = LineCollection([np.concatenate((c, c[:1])) for c in corners], colors=colours, lw=0.9, ls=(0, (2, 1.5)))
-    hidden.set_zorder(above + 0.05)  # what lies below the structure
-    hidden.set_clip_path(structure)
-    hidden.set_in_layout(False)
-    ax.add_collection(hidden, autolim=False)
+    if scene.structure.faces_down:
+        _draw_hidden(ax, structure, corners, colours)
     _draw_forces(ax, scene, picture)
     ax.axhline(scene.centre(scene.section_at(look.section)), color=EDGE, lw=0.8, ls=(0, (6, 4)), zorder=7)
     for shown, label in ((cells, "utilisation (fails at 1)"), (lost, "time of failure [s]")):
@@ -62,6 +59,17 @@ def draw_plan(ax: Axes, scene: Scene, look: Look, whole: bool = False, fill: boo
     set_frame(ax, frame, fill)
     grey = "; grey: cracked, darker as cracks are deeper" if fill and len(cracked_cells(picture)[0]) else ""
     ax.set_title(f"from above at {picture.t_ns / NS:.2f} s{grey}", fontsize=9)
+
+
+def _draw_hidden(ax: Axes, structure: Any, corners: Array, colours: list[str]) -> None:
+    """Outlines of the blocks below a ``structure`` that is drawn over them."""
+    from matplotlib.collections import LineCollection
+
+    hidden = LineCollection([np.concatenate((c, c[:1])) for c in corners], colors=colours, lw=0.9, ls=(0, (2, 1.5)))
+    hidden.set_zorder(structure.get_zorder() + 0.05)
+    hidden.set_clip_path(structure)
+    hidden.set_in_layout(False)
+    ax.add_collection(hidden, autolim=False)
 
 
 def _bar(ax: Axes, shown: Any, label: str) -> None:

@@ -37,14 +37,19 @@ BALANCES = {
 
 
 def statistics(run: RunData) -> dict[str, Any]:
-    """Of the mean loads over the averaging time, from first to last window: head and rows as text."""
+    """Of the mean loads over the averaging time, from first to last window: head and rows as text.
+
+    Shares of the time are those of the load in the direction of the largest one: below is nearer to zero.
+    """
     lasting = run.lasting
     values = {name: lasting.component(name) for name in ("fx", "fy", "fz", "f")}
     scale = scale_of((np.abs(v).max() for v in values.values()), "N")
     rows = []
     for name, load in values.items():
-        found = [float(load.mean()), float(load.std()), *np.quantile(load, [0.5, 0.9, 0.99]).tolist()]
-        rows.append((name.capitalize(), *map(scale.text, [*found, float(load[np.abs(load).argmax()])])))
+        largest = float(load[np.abs(load).argmax()])
+        shares = np.sign(largest) * np.quantile(np.sign(largest) * load, [0.5, 0.9, 0.99])
+        found = [float(load.mean()), float(load.std()), *shares.tolist(), largest]
+        rows.append((name.capitalize(), *map(scale.text, found)))
     return {"head": (f"load [{scale.unit}]", *STATISTICS), "rows": rows}
 
 
