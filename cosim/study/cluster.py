@@ -71,13 +71,19 @@ class Cluster:
             futures = distributed.as_completed([hand_out(t) for t in islice(waiting, room.now())], loop=client.loop)
             for future in futures:
                 task = given.pop(future.key)
-                if isinstance(future.exception(), distributed.KilledWorker):
+                try:
+                    row = _row(future, self.address)
+                except distributed.KilledWorker:
                     blamed.append(task)
                 else:
-                    yield task[0], _row(future, self.address)
+                    yield task[0], row
                 futures.update([hand_out(t) for t in islice(waiting, max(room.now() - len(given), 0))])
             for task in blamed:
-                yield task[0], _row(hand_out(task, "brash-alone"), self.address)
+                try:
+                    row = _row(hand_out(task, "brash-alone"), self.address)
+                except distributed.KilledWorker as error:
+                    row = _failed(error)
+                yield task[0], row
 
     @contextmanager
     def _client(self) -> Iterator[tuple[Any, Any]]:
@@ -107,14 +113,23 @@ def program() -> str:
     return f"{version()} {commit()}"
 
 
+def _failed(error: Exception) -> Row:
+    return {"error": f"no worker brought it to its end: {' '.join(str(error).split())[:300]}"}
+
+
 def _row(future: Any, address: str) -> Row:
-    """The row of a task, waited for; FailedError where the scheduler has gone or a worker runs another program."""
-    error = future.exception()  # of a cancelled task: nothing
+    """The row of a task, waited for; FailedError where the scheduler has gone or a worker runs another program.
+
+    KilledWorker where workers died while they had it.
+    """
     if future.cancelled():
         raise FailedError(f"--scheduler {address}: the scheduler has gone; start it again and go on with --resume")
-    if error is not None:
-        return {"error": f"no worker brought it to its end: {' '.join(str(error).split())[:300]}"}
-    row: Row = future.result()
+    try:
+        row: Row = future.result()
+    except Exception as error:
+        if type(error).__name__ == "KilledWorker":  # of a library that is an extra
+            raise
+        return _failed(error)
     theirs = row.pop("program")
     if theirs != program():
         raise FailedError(f"a worker runs brash {theirs}, this is {program()}; install the same on all machines")

@@ -204,12 +204,11 @@ def dies(study, number, variant):
     return {"fx_peak": float(number)}
 
 
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_dead_worker_of_a_cluster_costs_nothing_and_a_deadly_task_its_row(tmp_path, workers):
-    """On one worker the others wait beside the deadly task, and the scheduler blames them with it."""
+def test_a_dead_worker_of_a_cluster_costs_nothing_and_a_deadly_task_its_row(tmp_path):
+    """Others wait beside the deadly task, and the scheduler may blame them with it."""
     distributed = pytest.importorskip("distributed")
     chosen = [Variant((("a.x", str(k)),)) for k in range(5)]
-    with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster:
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         runner = Cluster(cluster.scheduler_address, retries=1)
         rows = sweep(str(tmp_path), chosen, runner, lambda row: None, task=dies_once)
         assert [row["fx_peak"] for row in rows] == [0.0, 1.0, 2.0, 3.0, 4.0]
