@@ -13,6 +13,7 @@ import types
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
+from math import degrees
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel
@@ -172,7 +173,7 @@ def default_of(field: FieldInfo) -> str | None:
         return ""
     unit = unit_of(field)
     if unit is not None:
-        return f"{field.default:g} {unit.si}"
+        return f"{degrees(field.default):g} deg" if unit.si == "rad" else f"{field.default:g} {unit.si}"
     default = list(field.default) if isinstance(field.default, tuple) else field.default
     return repr(default).replace("'", '"').replace("True", "true").replace("False", "false")
 
