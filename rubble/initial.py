@@ -33,6 +33,7 @@ from rubble.pile import Pile, measure
 PACKED = 0.12  #: porosity of settled rectangles in a plane: 0.09 to 0.15 for lengths of 0.5 to 1.5 thicknesses
 CALM = 1e-6  #: kinetic over potential energy of a settled pile
 RISE = 0.1  #: speed with which the sea bed comes up, over sqrt(g h)
+JAMMED = 0.25  #: depth of a block below the sea bed with which a pile has not grounded but jams, in thicknesses
 THICK_AIR = 0.2  #: share of its speed that a block loses in half of sqrt(h / g): it falls with 2 sqrt(g h) at most
 
 
@@ -131,6 +132,12 @@ def _ground(layer: RubbleLayer) -> None:
         layer.advance(steps)
         at += way
     layer.runner.bed = -p.depth
+    below = -p.depth - min(float(b.outline[:, 1].min()) for b in layer.blocks)
+    if below > JAMMED * p.thickness:
+        raise RuntimeError(
+            f"initial rubble jams between sheet and sea bed, {below:.2g} m of it below the bed; give less of it "
+            "(rubble.initial_volume) or more water (water.depth)"
+        )
 
 
 def _fill(
