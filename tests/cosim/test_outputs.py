@@ -284,7 +284,7 @@ from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 from cosim.signals import StoppedError
 
-resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
+resource.setrlimit(resource.RLIMIT_FSIZE, (250_000, 250_000))
 scenario = load_scenario("van_vliet_2018_floe_165m", ["scenario.duration='12 s'", "sheet.nodes=[40,40]"])
 recorder, seen = Recorder(sys.argv[2]), 0
 try:
