@@ -63,7 +63,7 @@ class Rubble(Section):
     initial_volume: Annotated[VolumeOrZero, Limits("0 m^3", "1e9 m^3", "200 m^3")] = 0.0
     #: least and greatest length of its blocks, evenly spread between, in thicknesses; they are as thick as the sheet
     initial_lengths: LengthsOfBlocks = Field((0.5, 1.5), examples=[[0.5, 1.5]])
-    #: of the heap as which it is spread round the structure; heaps before structures and keels have 25 to 40 deg [rad]
+    #: of the heap as which it is spread round the structure; assumption, the test of IceFloe has 40 deg [rad]
     initial_slope: Annotated[Angle, Limits("10 deg", "45 deg", "35 deg")] = radians(35.0)
     initial_porosity: float = Field(0.3, ge=0.12, le=0.6, examples=[0.3])  #: pore share of that rubble
     threads: Annotated[int, Field(ge=1, le=1024)] = 1  #: without effect: all contacts are solved together, on one
