@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import sqrt
 
 import numpy as np
@@ -37,9 +38,13 @@ class Place:
         """The same in some sections only."""
         return replace(self, fronts={k: front for k, front in self.fronts.items() if k in sections})
 
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self.foot)
+
     def distance(self, x: Array, y: float) -> Array:
         """Of points x in the plane y from the structure [m]."""
-        found: Array = cKDTree(self.foot).query(np.column_stack([x, np.full(len(x), y)]))[0]
+        found: Array = self._tree.query(np.column_stack([x, np.full(len(x), y)]))[0]
         return found
 
 

@@ -83,7 +83,7 @@ def settle(layer: RubbleLayer, place: Place, asked: Initial, longest: float = 30
     area = sum(f.area for f in flanks.values())
     for key in sorted(flanks):
         volume = asked.volume * flanks[key].area / area
-        _fill(layer, key, place, (flanks[key], volume), asked, random)
+        _fill(layer, key, place, flanks[key], volume, asked, random)
     layer.runner.bed = -inf
     return rest(layer, place, longest)
 
@@ -124,7 +124,7 @@ def _come_to_rest(layer: RubbleLayer, place: Place, longest: float) -> float:
 
 def _ground(layer: RubbleLayer) -> None:
     """The sea bed comes up from below the lowest block to where it is."""
-    p, at = layer.physics, min(float(b.outline[:, 1].min()) for b in layer.blocks)
+    p, at = layer.physics, _lowest(layer)
     steps = max(1, round(0.1 * sqrt(p.thickness / p.g) / p.substep))
     way = RISE * sqrt(p.thickness * p.g) * steps * p.substep
     while at < -p.depth:
@@ -132,7 +132,7 @@ def _ground(layer: RubbleLayer) -> None:
         layer.advance(steps)
         at += way
     layer.runner.bed = -p.depth
-    below = -p.depth - min(float(b.outline[:, 1].min()) for b in layer.blocks)
+    below = -p.depth - _lowest(layer)
     if below > JAMMED * p.thickness:
         raise RuntimeError(
             f"initial rubble jams between sheet and sea bed, {below:.2g} m of it below the bed; give less of it "
@@ -140,11 +140,21 @@ def _ground(layer: RubbleLayer) -> None:
         )
 
 
+def _lowest(layer: RubbleLayer) -> float:
+    return min(float(b.outline[:, 1].min()) for b in layer.blocks)
+
+
 def _fill(
-    layer: RubbleLayer, key: int, place: Place, held: tuple[Flank, float], asked: Initial, random: np.random.Generator
+    layer: RubbleLayer,
+    key: int,
+    place: Place,
+    flank: Flank,
+    volume: float,
+    asked: Initial,
+    random: np.random.Generator,
 ) -> None:
     """Blocks of one section, one behind the other: they rise, or fall, and arrive in turn, each at its place."""
-    (flank, volume), (front, top) = held, place.fronts[key]
+    front, top = place.fronts[key]
     h, width = layer.physics.thickness, layer.pitch * asked.share
     count, area = max(1, asked.blocks(flank, h)), volume / width
     length = random.uniform(*asked.lengths, count)

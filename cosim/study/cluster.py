@@ -72,18 +72,14 @@ class Cluster:
             for future in futures:
                 task = given.pop(future.key)
                 try:
-                    row = _row(future, self.address)
+                    row = _row(future, self.address, (distributed.KilledWorker,))
                 except distributed.KilledWorker:
                     blamed.append(task)
                 else:
                     yield task[0], row
                 futures.update([hand_out(t) for t in islice(waiting, max(room.now() - len(given), 0))])
             for task in blamed:
-                try:
-                    row = _row(hand_out(task, "brash-alone"), self.address)
-                except distributed.KilledWorker as error:
-                    row = _failed(error)
-                yield task[0], row
+                yield task[0], _row(hand_out(task, "brash-alone"), self.address)
 
     @contextmanager
     def _client(self) -> Iterator[tuple[Any, Any]]:
@@ -113,23 +109,19 @@ def program() -> str:
     return f"{version()} {commit()}"
 
 
-def _failed(error: Exception) -> Row:
-    return {"error": f"no worker brought it to its end: {' '.join(str(error).split())[:300]}"}
-
-
-def _row(future: Any, address: str) -> Row:
+def _row(future: Any, address: str, passed: tuple[type[Exception], ...] = ()) -> Row:
     """The row of a task, waited for; FailedError where the scheduler has gone or a worker runs another program.
 
-    KilledWorker where workers died while they had it.
+    Errors of the kinds ``passed`` are the caller's, others are the row.
     """
     if future.cancelled():
         raise FailedError(f"--scheduler {address}: the scheduler has gone; start it again and go on with --resume")
     try:
         row: Row = future.result()
+    except passed:
+        raise
     except Exception as error:
-        if type(error).__name__ == "KilledWorker":  # of a library that is an extra
-            raise
-        return _failed(error)
+        return {"error": f"no worker brought it to its end: {' '.join(str(error).split())[:300]}"}
     theirs = row.pop("program")
     if theirs != program():
         raise FailedError(f"a worker runs brash {theirs}, this is {program()}; install the same on all machines")
