@@ -6,6 +6,7 @@ import pytest
 
 from cosim.cli import main
 
+LONGEST = 600  #: a test of the ordinary suite [s]
 #: before numpy is loaded, for workers and what tests start too: threads of linear algebra wait for each other's turn
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 #: commands of tests compile kernels as they come to them; for the whole suite that is done before
@@ -23,6 +24,13 @@ def pytest_sessionstart(session):
 
     if parts := missing(list(PARTS)):
         compile_parts(parts, os.cpu_count() or 1, lambda part: print("compiled", *part, flush=True))
+
+
+def pytest_collection_modifyitems(items):
+    """A test that hangs fails and shows where, instead of holding up the whole suite."""
+    for item in items:
+        if item.get_closest_marker("slow") is None:
+            item.add_marker(pytest.mark.timeout(LONGEST))
 
 
 @pytest.fixture

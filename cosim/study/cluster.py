@@ -1,14 +1,14 @@
 """Tasks on a dask cluster that is already there: by the address of its scheduler, or by its scheduler file.
 
 Only as many tasks are handed out as keep the workers busy, so that the scheduler holds few of them, however many the
-study has. A task whose worker dies goes to another one, a few times. The scheduler blames a death on all tasks of that
-worker, those that only waited there too; so the blamed ones run once more at the end, one at a time, and only what
-kills its workers alone has the error in its row. Everything that a task needs goes with it (some kilobytes), so workers
-need this program and no files.
+study has. Each runs in a process beside its worker (`cosim.study.apart`): what kills it is tried again a few times and
+then the error in its row, and costs nothing else. A task whose worker dies goes to another one. Everything that a task
+needs goes with it (some kilobytes), so workers need this program and no files.
 """
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
@@ -20,6 +20,7 @@ from uuid import uuid4
 
 from cosim.errors import FailedError, InputError
 from cosim.provenance import commit, version
+from cosim.study.apart import Apart
 from cosim.study.pool import Task, Work
 from cosim.study.task import Row
 from cosim.study.variants import Variant
@@ -27,6 +28,7 @@ from cosim.study.variants import Variant
 AHEAD = 3  #: tasks in hand per thread of the workers: one runs, the others wait beside it
 LOOK = 2.0  #: time between two counts of the workers [s]
 PATIENCE = 30.0  #: time within which a scheduler answers [s]
+_OF_THREAD = threading.local()
 
 
 class Room:
@@ -59,27 +61,18 @@ class Cluster:
         """Number and row of each task as it ends."""
         waiting, study = iter(tasks), uuid4().hex[:8]
         with self._client() as (distributed, client):
-            given: dict[str, Task] = {}
-            blamed: list[Task] = []
+            given: dict[str, int] = {}
 
-            def hand_out(task: Task, name: str = "brash") -> Any:
-                key = f"{name}-{study}-{task[0]}"
-                given[key] = task
+            def hand_out(task: Task) -> Any:
+                key = f"brash-{study}-{task[0]}"
+                given[key] = task[0]
                 return client.submit(_here, work, *task, key=key, retries=self.retries, pure=False)
 
             room = Room(client)
             futures = distributed.as_completed([hand_out(t) for t in islice(waiting, room.now())], loop=client.loop)
             for future in futures:
-                task = given.pop(future.key)
-                try:
-                    row = _row(future, self.address, (distributed.KilledWorker,))
-                except distributed.KilledWorker:
-                    blamed.append(task)
-                else:
-                    yield task[0], row
+                yield given.pop(future.key), _row(future, self.address)
                 futures.update([hand_out(t) for t in islice(waiting, max(room.now() - len(given), 0))])
-            for task in blamed:
-                yield task[0], _row(hand_out(task, "brash-alone"), self.address)
 
     @contextmanager
     def _client(self) -> Iterator[tuple[Any, Any]]:
@@ -100,8 +93,10 @@ class Cluster:
 
 
 def _here(work: Work, number: int, variant: Variant) -> Row:
-    """A task in a worker: its row, with the program that made it."""
-    return {**work(number, variant), "program": program()}
+    """A task in a thread of a worker: its row, with the program that made it."""
+    if not hasattr(_OF_THREAD, "apart"):
+        _OF_THREAD.apart = Apart()
+    return {**_OF_THREAD.apart(work, number, variant), "program": program()}
 
 
 def program() -> str:
@@ -109,17 +104,12 @@ def program() -> str:
     return f"{version()} {commit()}"
 
 
-def _row(future: Any, address: str, passed: tuple[type[Exception], ...] = ()) -> Row:
-    """The row of a task, waited for; FailedError where the scheduler has gone or a worker runs another program.
-
-    Errors of the kinds ``passed`` are the caller's, others are the row.
-    """
+def _row(future: Any, address: str) -> Row:
+    """The row of a task that has ended; FailedError where the scheduler has gone or a worker runs another program."""
     if future.cancelled():
         raise FailedError(f"--scheduler {address}: the scheduler has gone; start it again and go on with --resume")
     try:
         row: Row = future.result()
-    except passed:
-        raise
     except Exception as error:
         return {"error": f"no worker brought it to its end: {' '.join(str(error).split())[:300]}"}
     theirs = row.pop("program")

@@ -204,17 +204,31 @@ def dies(study, number, variant):
     return {"fx_peak": float(number)}
 
 
+def kills_its_worker_once(study, number, variant):
+    """A task with which the worker beside it dies the first time, as when its machine is taken away."""
+    mark = Path(study, "killed")
+    if number == 1 and not mark.exists():
+        mark.touch()
+        os.kill(os.getppid(), signal.SIGKILL)
+    return {"fx_peak": float(number)}
+
+
 def test_a_dead_worker_of_a_cluster_costs_nothing_and_a_deadly_task_its_row(tmp_path):
-    """Others wait beside the deadly task, and the scheduler may blame them with it."""
     distributed = pytest.importorskip("distributed")
     chosen = [Variant((("a.x", str(k)),)) for k in range(5)]
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-        runner = Cluster(cluster.scheduler_address, retries=1)
-        rows = sweep(str(tmp_path), chosen, runner, lambda row: None, task=dies_once)
-        assert [row["fx_peak"] for row in rows] == [0.0, 1.0, 2.0, 3.0, 4.0]
-        rows = sweep(str(tmp_path), chosen, runner, lambda row: None, task=dies)
-    assert [row.get("fx_peak") for row in rows] == [0.0, None, 2.0, 3.0, 4.0]
-    assert "no worker brought it to its end" in rows[1]["error"]
+        workers = cluster.scheduler_info["workers"].keys()
+
+        def rows(task):
+            done = sweep(str(tmp_path), chosen, Cluster(cluster.scheduler_address, 1), lambda row: None, task=task)
+            return [row.get("fx_peak") for row in done], [row.get("error") for row in done]
+
+        assert rows(dies_once) == ([0.0, 1.0, 2.0, 3.0, 4.0], [None] * 5)
+        deadly = rows(dies)
+        assert deadly[0] == [0.0, None, 2.0, 3.0, 4.0]
+        assert deadly[1][1] == "no worker brought it to its end: its process died, exit 9"
+        assert workers == cluster.scheduler_info["workers"].keys()
+        assert rows(kills_its_worker_once) == ([0.0, 1.0, 2.0, 3.0, 4.0], [None] * 5)
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
