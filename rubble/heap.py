@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import sqrt
+from math import inf, sqrt
 
 import numpy as np
 from scipy.optimize import brentq
@@ -67,20 +67,22 @@ class Flank:
         return places
 
 
-def heap(place: Place, y: Mapping[int, float], bulk: float, slope: float, thickness: float) -> dict[int, Flank]:
+def heap(
+    place: Place, y: Mapping[int, float], bulk: float, slope: float, thickness: float, room: float = inf
+) -> dict[int, Flank]:
     """The flanks of a heap, without sections that it does not reach.
 
     ``y`` of the sections' planes [m]; ``bulk``, area of ice and pores of all sections together [m^2]; ``slope`` [rad];
-    ``thickness`` of the ice [m].
+    ``thickness`` of the ice [m]; ``room`` for it, to the sea bed [m].
     """
     step, tangent = STEP * thickness, float(np.tan(slope))
     nearest = min(float(place.distance(np.array([x]), y[k])[0]) for k, (x, _) in place.fronts.items())
-    farthest = nearest + sqrt(2.0 * bulk / tangent) + 2.0 * step  # where a single section holds it all
+    farthest = nearest + sqrt(2.0 * bulk / tangent) + bulk / room + 2.0 * step  # one section holds all
     x = {k: np.arange(front - 0.5 * step, front - farthest, -step) for k, (front, _) in place.fronts.items()}
     distance = {k: place.distance(at, y[k]) for k, at in x.items()}
 
     def thick(reach: float) -> dict[int, Array]:
-        return {k: tangent * np.maximum(reach - s, 0.0) for k, s in distance.items()}
+        return {k: np.clip(tangent * (reach - s), 0.0, room) for k, s in distance.items()}
 
     reach = brentq(lambda r: step * sum(float(t.sum()) for t in thick(r).values()) - bulk, nearest, farthest)
     return {k: Flank(x[k], t) for k, t in thick(reach).items() if t.any()}

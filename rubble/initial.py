@@ -12,8 +12,8 @@ they lie. The slope that they keep is a result: of friction, and of how thick th
 In a plane rectangles pack to a porosity of `PACKED`. Blocks are narrower than a section, with gaps between their sides,
 so that the pile has the porosity that is asked for, whatever the mesh.
 
-In shallow water the pile first settles without the sea bed, which then comes up from below the lowest block to where it
-is: what it meets grounds and spreads.
+In shallow water the heap is no thicker than the room over the sea bed, and what still comes to lie below the bed goes
+to the outer end of the pile, until all has room: the pile spreads.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from rubble.domain import Domain
 from rubble.geometry import place as placed
 from rubble.heap import Flank, Place, heap
 from rubble.layer import RubbleLayer
-from rubble.piece import Slab
+from rubble.piece import Plate, Slab
 from rubble.pile import Pile, measure
 
 PACKED = 0.12  #: porosity of settled rectangles in a plane: 0.09 to 0.15 for lengths of 0.5 to 1.5 thicknesses
 CALM = 1e-6  #: kinetic over potential energy of a settled pile
-RISE = 0.1  #: speed with which the sea bed comes up, over sqrt(g h)
-JAMMED = 0.25  #: depth of a block below the sea bed with which a pile has not grounded but jams, in thicknesses
+GAP = 0.01  #: between blocks that are laid beside each other, in thicknesses
+ROUNDS = 100  #: blocks of a section that go from below the sea bed to the outer end of the pile
 THICK_AIR = 0.2  #: share of its speed that a block loses in half of sqrt(h / g): it falls with 2 sqrt(g h) at most
 
 
@@ -67,7 +67,8 @@ class Initial:
     def flanks(self, layer: RubbleLayer, place: Place) -> dict[int, Flank]:
         """The heap that it forms; sections that would hold less than half a block hold none."""
         bulk, h = self.volume / (1.0 - self.porosity) / layer.pitch, layer.physics.thickness
-        found = heap(place, {k: layer.centre(k) for k in place.fronts}, bulk, self.slope, h)
+        room = inf if place.above else layer.physics.depth + min(z for _, z in place.fronts.values())
+        found = heap(place, {k: layer.centre(k) for k in place.fronts}, bulk, self.slope, h, room)
         kept = {k: f for k, f in found.items() if self.blocks(f, h) > 0}
         if len(kept) in (0, len(found)):
             return found
@@ -96,8 +97,7 @@ def rest(layer: RubbleLayer, place: Place, longest: float = 300.0) -> Pile:
     layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
     calm = _come_to_rest(layer, place, longest)
     if layer.runner.bed < -layer.physics.depth:
-        _ground(layer)
-        calm = _come_to_rest(layer, place, longest)
+        calm = _spread(layer, place, longest)
     time, layer.time, layer.runner.planar, layer.domain = layer.time, 0.0, False, domain
     layer.runner.yields = yields
     layer.set_form_drag(layer.physics.form_drag)
@@ -113,8 +113,9 @@ def rest(layer: RubbleLayer, place: Place, longest: float = 300.0) -> Pile:
 def _come_to_rest(layer: RubbleLayer, place: Place, longest: float) -> float:
     """Advance until nothing moves at both ends of a window, whose forces are those at rest; how calm it is."""
     half = 0.5 * sqrt(layer.physics.thickness / layer.physics.g)
+    end = layer.time + longest
     before, calm, steps = 1.0, 1.0, max(1, round((half if place.above else 0.5) / layer.physics.substep))
-    while max(before, calm) > CALM and layer.time < longest:
+    while max(before, calm) > CALM and layer.time < end:
         layer.advance(steps)
         before, calm = calm, _calm(layer, place)
         if place.above:
@@ -122,26 +123,38 @@ def _come_to_rest(layer: RubbleLayer, place: Place, longest: float) -> float:
     return calm
 
 
-def _ground(layer: RubbleLayer) -> None:
-    """The sea bed comes up from below the lowest block to where it is."""
-    p, at = layer.physics, _lowest(layer)
-    steps = max(1, round(0.1 * sqrt(p.thickness / p.g) / p.substep))
-    way = RISE * sqrt(p.thickness * p.g) * steps * p.substep
-    while at < -p.depth:
-        layer.runner.bed = at
-        layer.advance(steps)
-        at += way
-    layer.runner.bed = -p.depth
-    below = -p.depth - _lowest(layer)
-    if below > JAMMED * p.thickness:
-        raise RuntimeError(
-            f"initial rubble jams between sheet and sea bed, {below:.2g} m of it below the bed; give less of it "
-            "(rubble.initial_volume) or more water (water.depth)"
-        )
+def _spread(layer: RubbleLayer, place: Place, longest: float) -> float:
+    """What lies below the sea bed goes to the outer end of the pile; how calm it is when nothing does any more."""
+    for _ in range(ROUNDS):
+        below = [b for b in layer.blocks if _low(b) < -layer.physics.depth]
+        if not below:
+            layer.runner.bed = -layer.physics.depth
+            return _come_to_rest(layer, place, longest)
+        for key in sorted({_key(layer, b) for b in below}):
+            _lowest_goes_out(layer, key, place.fronts[key][1])
+        _come_to_rest(layer, place, longest)
+    raise RuntimeError(
+        f"initial rubble finds no room over the sea bed, {len(below)} blocks of it are below; give less of it "
+        "(rubble.initial_volume) or more water (water.depth)"
+    )
 
 
-def _lowest(layer: RubbleLayer) -> float:
-    return min(float(b.outline[:, 1].min()) for b in layer.blocks)
+def _lowest_goes_out(layer: RubbleLayer, key: int, top: float) -> None:
+    """The lowest block of a section goes to the ice ahead of all others of the section."""
+    own = [b for b in layer.blocks if _key(layer, b) == key]
+    block, gap = min(own, key=_low), GAP * layer.physics.thickness
+    outline, end = block.outline, min(float(b.outline[:, 0].min()) for b in own)
+    block.position[0] += end - gap - float(outline[:, 0].max())
+    block.position[2] += top - gap - float(outline[:, 1].max())
+    block.velocity[:] = block.omega[:] = 0.0
+
+
+def _key(layer: RubbleLayer, block: Plate) -> int:
+    return layer.key_at(float(block.position[1]))
+
+
+def _low(block: Plate) -> float:
+    return float(block.outline[:, 1].min())
 
 
 def _fill(

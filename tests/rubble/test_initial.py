@@ -200,8 +200,7 @@ def middle(asked, layer, place):
     return np.average(at, weights=np.concatenate([f.thickness for f in flanks.values()]))
 
 
-@pytest.mark.slow
-def test_a_pile_in_shallow_water_grounds_and_spreads():
+def test_a_pile_in_shallow_water_spreads():
     """Three quarters as deep as it would be: nothing below the bed, a flatter pile, the sheet lifted as ever."""
     _, deep = pile(450.0, (0,))
     depth = -UNDER + 0.75 * deep.depth
