@@ -182,8 +182,10 @@ class CrushingContact(OverlapContact):
 
     The face of contact reaches from the touching edge, h / 2 from the middle of the ice, down to the depth
     s = min(L tan a, h) below it, so the force acts h / 2 - s / 2 from the middle. Its moment bends a downward-breaking
-    edge up, against the vertical force. c and the height are set at the end of each window; where the edge has turned,
-    the overlap is another one at another height, and c moves with it: the closure is what it was.
+    edge up, against the vertical force. c and the height are set at the end of a window in which ice was crushed; where
+    the edge has turned, the overlap is another one at another height, and c moves with it: the closure is what it was.
+    An edge that swings without being crushed keeps both: would its height follow the overlap, c would come back
+    another one from each swing, and the contact would feed the swing.
     """
 
     def set_edge(self, nodes: IntArray, x: Array, y: Array, width: Array, lead: Array | None = None) -> None:
@@ -219,7 +221,10 @@ class CrushingContact(OverlapContact):
         """The crushed depth follows the overlap, less the closure at full strength; so does the height."""
         L, normal = self.overlap(t, displacement())
         crushed = np.maximum(self._crushed, L - self._law.strength / self._law.stiffness)
-        self._keep(crushed, self._bearing(L, normal))
+        deeper = (crushed > self._crushed).any(axis=1)
+        if not deeper.any():
+            return crushed
+        self._keep(crushed, np.where(deeper, self._bearing(L, normal), self.height))
         there = self.overlap(t, displacement())[0]
         moved_by = np.where((L > 0.0) & (there > 0.0), there - L, 0.0)
         self._keep(np.maximum(crushed + moved_by, 0.0), self.height)
