@@ -121,6 +121,7 @@ def build_ice(scenario: Scenario) -> Ice:
         rho_w=w.density,
         g=w.gravity,
         beam_test=test,
+        added_mass=w.added_mass,
         **{field: sign * value for key, (field, sign) in STRENGTHS.items() if (value := getattr(i, key)) is not None},
     )
 

@@ -120,9 +120,12 @@ def in_plane_mass(grid: Grid, ice: Ice) -> Array:
 
 
 def out_of_plane_mass(grid: Grid, ice: Ice) -> Array:
-    """Lumped mass of w and rotary inertia I = rho h^3 d^2 / 12 of phi_x, phi_y (2.21), (2.22), (3 nodes,)."""
+    """Lumped mass of w, that of water with it, and rotary inertia I = rho h^3 d^2 / 12 of phi_x, phi_y (2.21), (2.22).
+
+    (3 nodes,).
+    """
     m = ice.rho_i * ice.h * grid.area
-    return np.column_stack((m, m * ice.h**2 / 12.0, m * ice.h**2 / 12.0)).ravel()
+    return np.column_stack((m * (1.0 + ice.added_mass), m * ice.h**2 / 12.0, m * ice.h**2 / 12.0)).ravel()
 
 
 def foundation(grid: Grid, per_area: float) -> Array:

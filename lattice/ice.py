@@ -46,6 +46,7 @@ class Ice:
     sigma_f_downward: float = np.inf  #: flexural strength in downward bending, top in tension [Pa]
     sigma_shear: float = np.inf  #: out-of-plane shear strength [Pa]
     K_IC: float = np.inf  #: fracture toughness [Pa sqrt(m)]
+    added_mass: float = 0.0  #: water that moves with a deflection of the sheet, over the water that it displaces [-]
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.nu <= 1.0 / 3.0 + 1e-12:
@@ -53,6 +54,8 @@ class Ice:
         for name in POSITIVE:
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} = {getattr(self, name):g} must be greater than 0")
+        if not self.added_mass >= 0.0:
+            raise ValueError(f"added_mass = {self.added_mass:g} must not be negative")
         if not self.sigma_spall < 0.0:
             raise ValueError(
                 f"sigma_spall = {self.sigma_spall:g} Pa must be negative: it is a compressive stress (4.9)"
@@ -72,6 +75,15 @@ class Ice:
     def k_f(self) -> float:
         """Kelvin foundation per unit area, rho_w g (2.3.2) [N/m3]."""
         return self.rho_w * self.g
+
+    @property
+    def heaving_mass(self) -> float:
+        """Mass per area that moves with a deflection, water included [kg/m2].
+
+        Deep water under a sheet that deflects in waves of number k adds rho_w / k (Lamb, Hydrodynamics, 6th ed., art.
+        228): rho_w / (rho_i h k) times what is displaced.
+        """
+        return self.rho_i * self.h * (1.0 + self.added_mass)
 
     @property
     def l_c(self) -> float:

@@ -114,6 +114,10 @@ class Water(Section):
     #: of the water over a level sea bed, on which rubble grounds; default: so deep that nothing reaches it. The sheet
     #: does not meet the bed, and neither added mass nor drag grow in shallow water [m]
     depth: Annotated[Length, Limits("1 mm", "12 km", "10 m")] = None
+    #: share of the displaced mass of water that moves with the sheet where it deflects: density over density of the ice
+    #: over k h in waves of number k; pieces are about a quarter of a wave, k = pi / 2 over their length. None in the
+    #: thesis
+    added_mass: Coefficient = 0.0
     damping: Coefficient = 0.1  #: hydrodynamic, as share of sqrt(k_f rho_i h) (thesis 4.2.1)
     #: flood: a top of the sheet that is pressed under water fills as those of blocks do (`rubble.backfill`), and where
     #: the sheet has left the water only its weight pulls it down; dry: a Kelvin foundation, linear without end (thesis)

@@ -174,5 +174,5 @@ def half_springs(s: Springs, d: float) -> HalfSprings:
 
 def pace(ice: Ice, dt: float, alpha: float, damping: float) -> Pace:
     """Sub-steps of ``dt`` [s] with material ``alpha`` [s] and hydrodynamic ``damping`` [N s/m3]."""
-    per_mass = dt / (ice.rho_i * ice.h)
+    per_mass = dt / ice.heaving_mass
     return Pace(alpha, dt + alpha, per_mass * ice.k_f, per_mass * (damping - alpha * ice.k_f))
