@@ -30,12 +30,15 @@ import numpy as np
 from coupling.contact_friction import friction_at
 from coupling.interface import Array, IntArray, Path, Structure
 from coupling.structure import moved
+from lattice.contact import Faces
 
 #: points across the width of a node: on a cone of 15 m the mean overlap of nodes 1 m apart is within 1 % of the exact
 #: one from L = 0.1 m on
 SAMPLES = 8
 #: friction turns round over this part of the speed along the slope: there is no sliding where it turns [-]
 TURNS = 0.05
+NEAR = 0.02  #: distance from the structure that an edge may go in a sub-step, in thicknesses
+STEEP = 1e-9  #: least sine and cosine of a face's angle
 
 
 @dataclass(frozen=True)
@@ -88,10 +91,13 @@ class OverlapContact:
     def find(self, t: float, displacement: Callable[[], Array]) -> None:
         """Called where nodes have come into the front; ``displacement`` (m, 3) of the points of contact as they are."""
 
-    def overlap(self, t: float, y: Array) -> tuple[Array, Array]:
-        """L at the sample points (m, SAMPLES) [m] and the outward normal of the structure there (m, SAMPLES, 3)."""
+    def overlap(self, t: float, y: Array, ahead: float = 0.0) -> tuple[Array, Array]:
+        """L at the sample points (m, SAMPLES) [m] and the outward normal of the structure there (m, SAMPLES, 3).
+
+        Of ice that is ``ahead`` of where it is [m].
+        """
         z = self.touching_z + y[:, 2]
-        x = self._x + self._v * t + y[:, 0]
+        x = self._x + self._v * t + y[:, 0] + ahead
         across = self._sample_y + y[:, 1:2]
         if self.path is None:
             return self._s.overlap(x, across, z)
@@ -216,6 +222,23 @@ class CrushingContact(OverlapContact):
         elastic = self._law.stiffness * (L - self._crushed[rows])
         bearing = (elastic > 0.0) & (elastic < self._law.strength)
         return np.clip(elastic, 0.0, self._law.strength), np.where(bearing, self._law.stiffness, 0.0)
+
+    def faces(self, t: float, y: Array) -> Faces:
+        """The sample points of all nodes, also of those that are up to `NEAR` apart from the structure."""
+        near = NEAR * self._h
+        (L, _), (ahead, normal) = self.overlap(t, y), self.overlap(t, y, near)
+        sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
+        sin, cos = np.maximum(sin, STEEP), np.maximum(cos, STEEP)
+        per_area = (self._width[:, None] / SAMPLES)[..., None] * self._direction(normal, sin, np.arange(len(y)))
+        return Faces(
+            overlap=np.where(L > 0.0, L, ahead - near),
+            crushed=self._crushed,
+            grows=normal / normal[..., :1],
+            whole=self._h * cos / sin,
+            way=per_area / cos[..., None],
+            stiffness=self._law.stiffness,
+            strength=self._law.strength,
+        )
 
     def close_window(self, t: float, displacement: Callable[[], Array]) -> Array:
         """The crushed depth follows the overlap, less the closure at full strength; so does the height."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -42,6 +42,36 @@ class EdgeContact(Protocol):
 
         ``y`` (m, 3) is the `point_displacement` [m]; returns the force (m, 3) [N] and the tangent (m, 3, 3) [N/m].
         """
+
+
+class Faces(NamedTuple):
+    """Points at which nodes press with what closes, linear in the displacement of their points of action.
+
+    A pressure of ``stiffness`` times the overlap beyond ``crushed``, up to ``strength``, acts on an area that grows
+    with the overlap up to ``whole``.
+    """
+
+    overlap: Array  #: (m, s) now, negative where the face is apart [m]
+    crushed: Array  #: (m, s) [m]
+    grows: Array  #: (m, s, 3) overlap by displacement [-]
+    whole: Array  #: (m, s) overlap from which on the area is that of all of the ice [m]
+    way: Array  #: (m, s, 3) force by pressure and overlap [m]
+    stiffness: float  #: [Pa/m]
+    strength: float  #: [Pa]
+
+
+def no_faces(m: int) -> Faces:
+    """Of m nodes, no point."""
+    none, way = np.zeros((m, 0)), np.zeros((m, 0, 3))
+    return Faces(none, none, way, none, way, 0.0, 0.0)
+
+
+@runtime_checkable
+class PressingContact(Protocol):
+    """An `EdgeContact` that tells of its faces: whether they close within a sub-step does not show in a tangent."""
+
+    def faces(self, t: float, y: Array) -> Faces:
+        """Its points at time t about displacements y (m, 3) of the points of action."""
 
 
 class NoContact:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from lattice.compiled import compiled
 from lattice.cracks.lean import book_pull, look_at_cells, overloaded_leaning
 from lattice.cracks.motion import Layered, Nodes, damping_power, give, pull_on_held
+from lattice.cracks.pressing import press, remember_velocity
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import pull_of_springs, push, sweep
 from lattice.explicit.layout import Mesh, Motion
@@ -37,9 +40,12 @@ def march_cracked(
     hold, my = 0.0, motion.y.shape[2]
     before, force = mesh.before.reshape(5, -1), layered.nodes.force
     nodes = Nodes(motion.y.reshape(5, -1), motion.v.reshape(5, -1), my, pace.alpha, pace.go - pace.alpha)
+    presses, then = touch.faces.overlap.shape[1] > 0, np.empty((len(touch.row), 5))
     for step in range(stretch.steps):
-        contact_force(touch, sums.now, motion, pace.alpha)
-        sums.contact[:] += sums.now[:, :3]
+        if presses:
+            remember_velocity(touch, sums.now, then, motion.v)
+        else:
+            contact_force(touch, sums.now, motion, pace.alpha)
         look_at_cells(nodes, mesh.intact.plane.reshape(-1), layered)
         if step % stretch.stride == 0:
             mesh.before[:] = motion.v
@@ -51,6 +57,9 @@ def march_cracked(
         push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
         push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
         give(motion, mesh.kick, pace.go, force)
+        if presses:
+            contact_work += press(touch, sums.now, then, motion, mesh.kick, pace.go - pace.alpha, pace.alpha)
+        sums.contact[:] += sums.now[:, :3]
         contact_work += half_power(load, touch, sums, motion.v)
         book_pull(0.5 * nodes.dt, nodes.v, layered)
         if step % stretch.stride == 0:

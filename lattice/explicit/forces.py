@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.contact import EdgeContact
+from lattice.contact import EdgeContact, Faces, PressingContact, no_faces
 from lattice.explicit.layout import W
 from lattice.grid import Array, IntArray
 from lattice.loads import NodeLoad
@@ -33,6 +33,7 @@ class Touch(NamedTuple):
     at: Array  #: (m, 3) displacement of the points at which ``force`` holds [m]
     force: Array  #: (m, 3) [N]
     tangent: Array  #: (m, 3, 3) [N/m]
+    faces: Faces  #: where there are any, the march goes by these
 
     def at_once(self) -> PointForces:
         """The force for the displacement ``at``, with its moments about the middle."""
@@ -67,7 +68,8 @@ def indenter(nodes: IntArray, columns: int, stiffness: Array | float) -> Touch:
     """Vertical springs of this stiffness, (m,) or all alike [N/m], on nodes (m,); their far ends are ``at``, now 0."""
     m, tangent = len(nodes), np.zeros((len(nodes), 3, 3))
     tangent[:, W, W] = -stiffness
-    return Touch(*np.divmod(nodes, columns), np.zeros(m), np.zeros(m), np.zeros((m, 3)), np.zeros((m, 3)), tangent)
+    none = np.zeros(m), np.zeros(m), np.zeros((m, 3)), np.zeros((m, 3))
+    return Touch(*np.divmod(nodes, columns), *none, tangent, no_faces(m))
 
 
 Pressed = tuple[IntArray, Array]  #: nodes on which some force of a load is not zero (k,), and what acts on them (k, 5)
@@ -105,12 +107,15 @@ def _pressed(force_u: Array, force_q: Array) -> Pressed:
 
 def touch_at(t: float, contact: EdgeContact, at: Array, columns: int) -> Touch:
     """Force and tangent of a contact at time t for displacements ``at`` (m, 3) of its points [m]."""
-    force, tangent = contact.evaluate(t, np.ascontiguousarray(at))
+    at = np.ascontiguousarray(at)
+    force, tangent = contact.evaluate(t, at)
+    faces = contact.faces(t, at) if isinstance(contact, PressingContact) else no_faces(len(at))
     return Touch(
         *np.divmod(contact.nodes, columns),
         np.ascontiguousarray(contact.height),
         np.ascontiguousarray(contact.lead),
-        np.ascontiguousarray(at),
+        at,
         np.ascontiguousarray(force),
         np.ascontiguousarray(tangent),
+        faces,
     )

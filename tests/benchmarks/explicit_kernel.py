@@ -21,6 +21,7 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 
+from lattice.contact import no_faces
 from lattice.explicit.engine import ExplicitEngine, SubSteps
 from lattice.explicit.forces import NOTHING, Touch
 from lattice.explicit.kernels import sweep
@@ -119,7 +120,10 @@ def rates(n: int) -> dict[str, float]:
     """Node-steps per second."""
     e, steps = engine(n), max(4, 10_000_000 // n**2)
     none = np.zeros((0, 3))
-    touch, mesh = Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), none, none, np.zeros((0, 3, 3))), e.mesh
+    touch, mesh = (
+        Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), none, none, np.zeros((0, 3, 3)), no_faces(0)),
+        e.mesh,
+    )
 
     def sweeps() -> None:
         for _ in range(steps):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lattice.assembly import assemble
-from lattice.contact import NoContact
+from lattice.contact import NoContact, no_faces
 from lattice.criteria.laws import combined_tension
 from lattice.energy import EnergyBooks
 from lattice.explicit.engine import ExplicitEngine, SubSteps
@@ -28,7 +28,7 @@ GRID = Grid(9, 7, 3.0)
 BRITTLE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0, sigma_t=750e3, sigma_f=750e3, sigma_c=4e6)
 ICE = replace(BRITTLE, sigma_t=1e15, sigma_f=1e15, sigma_c=5e15)
 HERE = np.ones(GRID.nodes, bool)
-NO_TOUCH = Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), *np.zeros((2, 0, 3)), np.zeros((0, 3, 3)))
+NO_TOUCH = Touch(*np.zeros((2, 0), np.int64), *np.zeros((2, 0)), *np.zeros((2, 0, 3)), np.zeros((0, 3, 3)), no_faces(0))
 MIRROR = np.arange(GRID.nodes).reshape(GRID.nx, GRID.ny)[:, ::-1].ravel()
 
 
