@@ -19,7 +19,8 @@ from cosim.scenario.scenario import Scenario
 from cosim.scenario.variation import FIELDS
 from cosim.strained import Strained
 from cosim.structures import KINDS
-from coupling.contact import CONTACTS, ContactLaw
+from coupling.contact import ContactLaw
+from coupling.crushing import CONTACTS
 from coupling.interface import NS, BoolArray, Motion, RubbleParticipant, Structure
 from coupling.interface import Path as Way
 from coupling.ledger import Ledger

@@ -70,8 +70,8 @@ def no_faces(m: int) -> Faces:
 class PressingContact(Protocol):
     """An `EdgeContact` that tells of its faces: whether they close within a sub-step does not show in a tangent."""
 
-    def faces(self, t: float, y: Array) -> Faces:
-        """Its points at time t about displacements y (m, 3) of the points of action."""
+    def faces(self, t: float, y: Array) -> tuple[Array, Array, Array, Array, Array, float, float]:
+        """Its points at time t about displacements y (m, 3) of the points of action, as `Faces` has them."""
 
 
 class NoContact:

@@ -26,7 +26,7 @@ def schemes() -> Iterable[str]:
 
 def contacts() -> Iterable[str]:
     """Models of the contact between sheet and structure."""
-    from coupling.contact import CONTACTS
+    from coupling.crushing import CONTACTS
 
     return CONTACTS
 

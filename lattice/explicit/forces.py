@@ -109,7 +109,7 @@ def touch_at(t: float, contact: EdgeContact, at: Array, columns: int) -> Touch:
     """Force and tangent of a contact at time t for displacements ``at`` (m, 3) of its points [m]."""
     at = np.ascontiguousarray(at)
     force, tangent = contact.evaluate(t, at)
-    faces = contact.faces(t, at) if isinstance(contact, PressingContact) else no_faces(len(at))
+    faces = Faces(*contact.faces(t, at)) if isinstance(contact, PressingContact) else no_faces(len(at))
     return Touch(
         *np.divmod(contact.nodes, columns),
         np.ascontiguousarray(contact.height),

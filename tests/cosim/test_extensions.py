@@ -15,7 +15,8 @@ from cosim.scenario.errors import ScenarioError
 from cosim.scenario.loading import load_scenario
 from cosim.simulation import run_scenario
 from cosim.structures import KINDS, Kind
-from coupling.contact import CONTACTS, OverlapContact
+from coupling.contact import OverlapContact
+from coupling.crushing import CONTACTS
 from coupling.schemes import SCHEMES, Iteration
 from coupling.structure import plane_slope
 from lattice.criteria.table import CRITERIA, Criterion

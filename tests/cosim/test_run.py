@@ -12,7 +12,7 @@ import pytest
 
 from cosim.scenario.loading import load_scenario
 from cosim.simulation import run_scenario
-from coupling.contact import CONTACTS, CrushingContact
+from coupling.crushing import CONTACTS, CrushingContact
 from coupling.energy import SOURCES, STORES, residual_of
 from coupling.interface import SimulationError
 from coupling.sheet_port import SheetPort

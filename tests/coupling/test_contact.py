@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coupling.contact import ContactLaw, CrushingContact, OverlapContact
+from coupling.contact import ContactLaw, OverlapContact
+from coupling.crushing import CrushingContact
 from coupling.structure import cone, plane_slope
 from lattice.memory import recall, remember
 

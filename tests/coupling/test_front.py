@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coupling.contact import CONTACTS, ContactLaw
+from coupling.contact import ContactLaw
+from coupling.crushing import CONTACTS
 from coupling.interface import SheetForces
 from coupling.sheet_port import SheetPort
 from coupling.structure import plane_slope

@@ -7,7 +7,7 @@ import pytest
 
 from cosim.scenario.loading import load_scenario
 from cosim.simulation import run_scenario
-from coupling.contact import CONTACTS, CrushingContact
+from coupling.crushing import CONTACTS, CrushingContact
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
