@@ -1,6 +1,6 @@
 """Case `narrow-cone`: what moves the first load of `scenarios/narrow_cone`, one thing at a time.
 
-Thickness and cells, speed of the drift, fracture energy, and the edge: straight, or fitting round the cone as after an
+Thickness and cells, speed of the drift, fracture energy, water that moves along, and the edge: straight, or fitting round the cone as after an
 earlier encounter. There is no rubble; the load is that of single windows until it has fallen to half. Beside it stand
 ISO 19906 (Croasdale's H_B, a front as wide as the cone) and 3.2 sigma_f h^2 (D / L_c)^0.34, stated with the case. The
 beam with which `lattice.cracks.beam` finds the strength of the layers is simulated once more in the sheet's own cells.
@@ -33,6 +33,7 @@ PARAMETERS: dict[str, Any] = {
     "cells": [2.0, 1.0, 0.8],
     "speed": [0.1],
     "energies": [0.0, 38.0],
+    "added": [0.0, 10.0],
     "edge": 2.2,
 }
 REACH, BESIDE = 6.0, 2.2  #: length of the sheet, and its width beside each side of the cone, over L_c
@@ -121,6 +122,7 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
     if not quick:
         base, c = loads[h.index(middle), 1], cells[1]
         energies = [[f"fracture.fracture_energy='{g} J/m^2'"] for g in p["energies"]]
+        added = [[f"water.added_mass={a}"] for a in p["added"]]
         out += [
             at_most("first load on the finest mesh over that of the case, less 1", loads[:, 2] / loads[:, 1] - 1.0,
                     "-", 0.1, SOURCE),
@@ -128,6 +130,8 @@ def run(p: dict[str, Any], quick: bool) -> CaseResult:
             value("first load at it, 0.2 m", [first_load(scenario_of(middle, c, speed=v)) for v in p["speed"]], "N"),
             value("fracture energy", p["energies"], "J/m2"),
             value("first load at it, 0.2 m", [first_load(scenario_of(middle, c, more)) for more in energies], "N"),
+            value("water that moves along, over what is displaced", p["added"], "-"),
+            value("first load with it, 0.2 m", [first_load(scenario_of(middle, c, more)) for more in added], "N"),
             value("first load on an edge round the cone over that on a straight one",
                   fitting(middle, cells[2], p["edge"]) / base, "-"),
         ]  # fmt: skip
