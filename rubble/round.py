@@ -13,6 +13,7 @@ import numpy as np
 from rubble.arrays import Array
 from rubble.compiled import compiled
 
+SURELY = 1e-9  #: share of a distance that rounding is kept away from
 DEEPER = 1e-6  #: share of an edge's depth by which a point of it stands deeper than its ends
 
 
@@ -31,6 +32,22 @@ class Spot(NamedTuple):
     depth: float  #: below the surface, negative outside [m]
     n_rho: float  #: normal of the surface, in the meridian plane
     n_z: float
+
+
+@compiled(nogil=True, borrows=True)
+def widest_between(body: Array, low: float, high: float) -> float:
+    """Greatest radius of the body whose closed generator is (k, 2) (r, z) between two heights [m]; -inf beside it."""
+    widest = -np.inf
+    for k in range(body.shape[0] - 1):
+        below, above = body[k, 1], body[k + 1, 1]
+        if above < low or below > high:
+            continue
+        a, b = body[k, 0], body[k + 1, 0]
+        if below < above:
+            slope = (b - a) / (above - below)
+            a, b = a + slope * max(low - below, 0.0), b - slope * max(above - high, 0.0)
+        widest = max(widest, a, b)
+    return widest
 
 
 @compiled(nogil=True, borrows=True)
@@ -66,6 +83,17 @@ def spot_at(body: Array, x: float, y: float, z: float) -> Spot:
     """A point in the axes of the body."""
     depth, n_rho, n_z = depth_at(body, np.hypot(x, y), z)
     return Spot(x, y, z, depth, n_rho, n_z)
+
+
+@compiled(nogil=True, borrows=True)
+def is_beside(body: Array, p: Spot, q: Spot) -> bool:
+    """Whether the edge between two corners is farther from the axis than the body is wide where it is."""
+    dx, dy = q.x - p.x, q.y - p.y
+    a, b = dx * dx + dy * dy, p.x * dx + p.y * dy
+    s = min(max(-b / a, 0.0), 1.0) if a > 0.0 else 0.0
+    nearest = np.hypot(p.x + s * dx, p.y + s * dy)
+    beside: bool = (1.0 - SURELY) * nearest > widest_between(body, min(p.z, q.z), max(p.z, q.z))
+    return beside
 
 
 @compiled(nogil=True, borrows=True)
