@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lattice.cuda.kernels import Lattice, fold
 from lattice.explicit.layout import Intact, Mesh, Motion, PerNode
 from lattice.explicit.screen import Screen
+from lattice.grid import Array
 
 ROW, LIST = 64, 128  #: threads of a block along a row of nodes, and along a list
 
@@ -32,6 +33,12 @@ def over(n: int) -> tuple[int, int]:
 def copied(array: NDArray[Any]) -> Any:
     """A copy on the card."""
     return cuda.to_device(np.ascontiguousarray(array))
+
+
+def back(array: Any) -> Array:
+    """A copy on the host of one on the card."""
+    on_host: Array = array.copy_to_host()
+    return on_host
 
 
 class Card:
@@ -90,7 +97,7 @@ class Card:
     def taken(self) -> float:
         """What damping has taken since it was last asked [J]."""
         fold[over(self.columns.size)](self.loss, self.columns)
-        return float(self.columns.copy_to_host().sum())
+        return float(back(self.columns).sum())
 
 
 def _lattice(mesh: Mesh, screen: Screen) -> Lattice:

@@ -9,7 +9,7 @@ from numba import cuda
 
 from lattice.contact import EdgeContact, lever_of
 from lattice.cuda import readings
-from lattice.cuda.card import Card, copied, over, over_nodes
+from lattice.cuda.card import Card, back, copied, over, over_nodes
 from lattice.cuda.kernels import Entries, Held, Lattice, Order, dissipate, look, move, overloaded, push
 from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
@@ -28,8 +28,7 @@ class CardPath(Path):
 
     def total(self) -> Array:
         """As `Path.total`."""
-        on_host: Array = self.sum.copy_to_host()
-        return np.ascontiguousarray(on_host.reshape(3, -1).T)
+        return np.ascontiguousarray(back(self.sum).reshape(3, -1).T)
 
 
 class CardEngine(ExplicitEngine):
@@ -75,7 +74,7 @@ class CardEngine(ExplicitEngine):
             lists = (*np.divmod(contact.nodes, self.grid.ny), height, lead)
             at = (copied(a) for a in lists)
             readings.points[over(len(contact.nodes))](*at, self.card.motions()[0], self.alpha, out)
-        return np.asarray(out.copy_to_host())
+        return back(out)
 
     def path(self) -> Path:
         """As `ExplicitEngine.path`."""
@@ -118,12 +117,12 @@ class CardEngine(ExplicitEngine):
         return self._made(made, int(found[made]), load, entries, held, sums)
 
     def _made(self, steps: int, faces: int, load: PointForces, entries: Entries, held: Held, sums: Sums) -> Made:
-        k, power = len(load.row), entries.power.copy_to_host()
-        sums.contact[:] += entries.contact.copy_to_host()[: len(sums.contact)]
+        k, power = len(load.row), back(entries.power)
+        sums.contact[:] += back(entries.contact)[: len(sums.contact)]
         for n in range(len(sums.work)):
             sums.work[n] += power[load.first[n] : load.first[n + 1]].sum()
         of_contact = float(power[k : k + len(sums.contact)].sum())
-        return Made(steps, faces, of_contact, self.card.taken(), float(held.pull.copy_to_host().sum()))
+        return Made(steps, faces, of_contact, self.card.taken(), float(back(held.pull).sum()))
 
     def _lattice(self) -> Lattice:
         return self.card.take(self.mesh, self.screen, self._host)

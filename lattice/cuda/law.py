@@ -77,13 +77,15 @@ def power_of_springs(i: int, j: int, one: Array, two: Array, intact: Intact, spr
     u, v, c = stretches(a, b, halfway(i, j + 1, one, two), halfway(i + 1, j + 1, one, two), springs.lever)
     along = x[0] * u[0] + x[1] * u[1] + x[2] * u[2] + x[3] * u[3] + x[4] * u[4]
     across = z[0] * v[0] + z[1] * v[1] + z[2] * v[2] + z[3] * v[3] + z[4] * v[4]
-    return along + across + d[0] * c[0] + d[1] * c[1] + d[2] * c[2] + d[3] * c[3]
+    power: float = along + across + d[0] * c[0] + d[1] * c[1] + d[2] * c[2] + d[3] * c[3]
+    return power
 
 
 @on_card
 def moved(c: int, i: int, j: int, motion: Motion, ago: float) -> float:
     """A displacement of a node now, y - ago v."""
-    return motion.y[c, i, j] - ago * motion.v[c, i, j]
+    now: float = motion.y[c, i, j] - ago * motion.v[c, i, j]
+    return now
 
 
 @on_card

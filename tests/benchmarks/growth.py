@@ -9,8 +9,8 @@ as ``--limit`` seconds of processor time reach (a share of them on explicit engi
 * `implicit`: open cracks, quasi-static (van Vliet 2018, section 6.3);
 * `explicit`: the same with true inertia, on the explicit engine; its material damping is proportional to stiffness,
   so that the critical step goes with the square of the cells' size;
-* `undamped`: the same without material damping: the critical step goes with the cells' size;
-* `closing`: cracks that close (floe of the basin of 2010).
+* `closing`: cracks that close (floe of the basin of 2010);
+* `undamped`: `explicit` without material damping: the critical step goes with the cells' size.
 
 Cost is wall and processor time per simulated second, without the start: building and the first window, which
 factorises. Sizes are compared over the same time of the floe, the longest that all of a case have reached, as slopes
@@ -61,8 +61,8 @@ class Case(NamedTuple):
 CASES = {
     "implicit": Case(THESIS, (), 480, 1.0),
     "explicit": Case(THESIS, DYNAMIC, 240, 0.05),
-    "undamped": Case(THESIS, (*DYNAMIC, "ice.material_damping='0 s'"), 1000, 0.05),
     "closing": Case(BASIN, ("rubble.initial_volume='0 m^3'",), 240, 0.1),
+    "undamped": Case(THESIS, (*DYNAMIC, "ice.material_damping='0 s'"), 1000, 0.05),
 }
 SECONDS = 60.0
 LINES: dict[str, Callable[[np.ndarray], np.ndarray]] = {"N log N": lambda N: N * np.log(N), "N^1.5": lambda N: N**1.5}
@@ -124,15 +124,14 @@ def slope(N: np.ndarray, values: np.ndarray) -> float:
 
 
 def growth_of(name: str, runs: Sequence[Run]) -> str:
-    """A row of the table of exponents."""
+    """Exponents of N, for all sizes and for the two largest."""
     until = min(float(r.at[-1]) for r in runs)
     N = np.array([float(r.nodes**2) for r in runs])
-    memory = np.array([r.memory for r in runs])
-    shown = [f"{slope(N[k:], line(N)[k:]):.2f}" for line in LINES.values() for k in (0, -2)]
     cost = np.array([r.per_second(r.cpu, until) for r in runs])
-    found = [f"{slope(N[k:], values[k:]):.2f}" for values in (cost, memory) for k in (0, -2)]
-    sizes = f"{runs[0].nodes} to {runs[-1].nodes}"
-    return f"| {name} | {sizes} | {until:g} | {' | '.join((*found, *shown))} |"
+    found = {"processor time": cost, "memory": np.array([r.memory for r in runs])}
+    found |= {label: line(N) for label, line in LINES.items()}
+    both = (f"{what} {slope(N, v):.2f} ({slope(N[-2:], v[-2:]):.2f})" for what, v in found.items())
+    return f"exponents of {name} until {until:g} s, in brackets those of the two largest: {', '.join(both)}"
 
 
 def picture(found: dict[str, list[Run]], target: Path) -> None:
@@ -158,18 +157,20 @@ def picture(found: dict[str, list[Run]], target: Path) -> None:
 
 
 def main() -> None:
-    """Prints both tables, row by row, and draws them."""
+    """Prints a table for each case, row by row, and draws them."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", nargs="*", choices=CASES, default=list(CASES))
     parser.add_argument("--sizes", type=int, nargs="*", default=(*SIZES, 1000), help="nodes along a side of the floe")
     parser.add_argument("--limit", type=float, default=1200.0, help="longest processor time of an implicit run [s]")
     parser.add_argument("-o", "--output", type=Path, default=None, metavar="PNG", help="picture")
     options = parser.parse_args()
-    print(f"165 m floe, breaking only. {machine()}\n")
-    print("| case | nodes | simulated [s] | failed cells | start [s] | wall per s | processor per s | memory [MB] |")
-    print("|---|---|---|---|---|---|---|---|")
+    print(f"165 m floe, breaking only. {machine()}")
     found: dict[str, list[Run]] = {}
     for name in options.cases:
+        print(
+            "\n| case | nodes | simulated [s] | failed cells | start [s] | wall per s | processor per s | memory [MB] |"
+        )
+        print("|---|---|---|---|---|---|---|---|")
         for n in (n for n in options.sizes if n <= CASES[name].largest):
             r = apart(measure, Task(name, n, CASES[name].share * options.limit))
             found.setdefault(name, []).append(r)
@@ -178,13 +179,10 @@ def main() -> None:
                 f"| {r.per_second(r.cpu):.2f} | {r.memory:.0f} |",
                 flush=True,
             )
-    columns = "cost | last two | memory | last two | N log N | last two | N^1.5 | last two"
-    print(f"\nExponents of N:\n\n| case | sizes | until [s] | {columns} |\n|{'---|' * 11}")
-    for name, runs in found.items():
-        if len(runs) > 1:
-            print(growth_of(name, runs))
-    if options.output is not None:
-        picture(found, options.output)
+        if len(found.get(name, ())) > 1:
+            print(f"\n{growth_of(name, found[name])}", flush=True)
+        if options.output is not None:
+            picture(found, options.output)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from lattice.explicit.engine import ExplicitEngine
 
 CASE = "van_vliet_2018_floe_165m"
 CARD = ("fracture.device='cuda'", "fracture.propagation='dynamic'")
-#: a window of a coarse floe in the simulator of the card, and on the host
+#: two windows of a coarse floe in the simulator of the card, and on the host
 RUN = """
 import sys
 from cosim.build import build
@@ -24,12 +24,11 @@ for device in ("cuda", "cpu"):
     case = load_scenario(sys.argv[1], [*sys.argv[2:], f"fracture.device='{device}'"])
     scheduler = build(case)
     print(type(scheduler.sheet.sheet.engine).__name__)
-    sheet = scheduler.sheet.sheet
-    sheet.state.q_dot[:, 0] = 1e-3 * sheet.grid.xy[:, 0]
-    scheduler.macro_step()
-    states.append(sheet.state.q)
+    for _ in range(2):
+        scheduler.macro_step()
+    states.append(scheduler.sheet.sheet.state.u)
 card, host = states
-assert abs(host[:, 1]).max() > 0.0
+assert abs(host).max() > 0.0
 assert abs(card - host).max() < 1e-12 * abs(host).max()
 """
 
@@ -66,7 +65,7 @@ def test_without_the_extra_or_a_card_one_line_says_so(monkeypatch):
 def test_a_scenario_runs_on_the_card():
     pytest.importorskip("numba_cuda")
     short = ("rubble.enabled=false", "sheet.nodes=[9,9]", "ice.beam_test.width='12 m'", "ice.material_damping='0 s'")
-    short += ("coupling.window='1 ms'", "rubble.substep='1 ms'")
+    short += ("coupling.window='1 ms'", "rubble.substep='1 ms'", "water.current=['1 m/s','0.5 m/s']")
     env = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "PYTHONPATH": str(Path(__file__).parents[2])}
     command = [sys.executable, "-c", RUN, CASE, *short, CARD[1]]
     done = subprocess.run(command, env=env, capture_output=True, text=True)
