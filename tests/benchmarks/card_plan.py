@@ -95,8 +95,8 @@ def floe(n: int, *overrides: str):
     return build(load_scenario("van_vliet_2018_floe_165m", [*common, *overrides]))
 
 
-def between_sub_steps(n: int) -> float:
-    """Processor time of the host per node and window outside the loop of sub-steps [s]."""
+def on_the_host(n: int) -> tuple[float, float]:
+    """Processor time per node outside the loop of sub-steps in a window, and in it per sub-step [s]."""
     scheduler = floe(n, "ice.material_damping='0 s'")
     engine, inside = scheduler.sheet.sheet.engine, [0.0]
     loop = engine.loop
@@ -112,7 +112,8 @@ def between_sub_steps(n: int) -> float:
     began = time.process_time()
     for _ in range(3):
         scheduler.macro_step()
-    return (time.process_time() - began - inside[0]) / 3 / n**2
+    between = time.process_time() - began - inside[0]
+    return between / 3 / n**2, inside[0] / 3 / engine.sub_steps / n**2
 
 
 def main() -> None:
@@ -126,26 +127,27 @@ def main() -> None:
     print(f"with damping taken stock of: {WIDTH * booked} B, {flops_booked} operations\n")
     with threadpool_limits(1):
         engines = [floe(COARSE, *more).sheet.sheet.engine for more in (("ice.material_damping='0 s'",), ())]
-        host = between_sub_steps(HOST) * NODES
+        between, core = (NODES * t for t in on_the_host(HOST))
     share = (COARSE - 1) / (SIDE - 1)
     dt, damped = (SHARE_OF_CRITICAL * e.critical * share**p for e, p in zip(engines, (1, 2), strict=True))
     window = engines[0].window
-    print("| card | by memory [ms] | by arithmetic [ms] | limit | node-steps/s | wall per simulated s, sub-steps |")
+    steps = window / dt
+    print(
+        f"sub-steps of {1e6 * dt:.1f} us, with material damping {1e6 * damped:.2f} us; window of {1e3 * window:g} ms\n"
+    )
+    print(
+        "| | sub-step by memory [ms] | by arithmetic [ms] | window: sub-steps [s] | link [s] | between sub-steps [s] |"
+    )
     print("|---|---|---|---|---|---|")
+    print(f"| one core of this host | | | {steps * core:.2f} | | {between:.2f} |")
     for card in CARDS:
         memory, arithmetic = NODES * WIDTH * quiet / card.bandwidth, NODES * flops / card.flops
-        step = max(memory, arithmetic)
-        limit = "memory" if memory > arithmetic else "arithmetic"
+        marched, crossing = steps * max(memory, arithmetic), NODES * WIDTH * CROSS / card.link
         print(
-            f"| {card.name} ({card.source}) | {1e3 * memory:.3f} | {1e3 * arithmetic:.3f} | {limit} "
-            f"| {NODES / step / 1e9:.1f}e9 | {step / dt:.1f} s; with material damping {step / damped:.0f} s |"
+            f"| {card.name} | {1e3 * memory:.3f} | {1e3 * arithmetic:.3f} | {marched:.2f} | {crossing:.3f} "
+            f"| {between:.2f}, on the host |"
         )
-        crossing = NODES * WIDTH * CROSS / card.link
-        print(
-            f"  in a window of {1e3 * window:g} ms: sub-steps {window / dt * step:.2f} s, "
-            f"over the link {crossing:.3f} s, host between sub-steps {host:.2f} s"
-        )
-    print(f"sub-steps {1e6 * dt:.1f} us, with material damping {1e6 * damped:.2f} us")
+    print("\n" + "\n".join(f"{card.name}: {card.source}" for card in CARDS))
 
 
 if __name__ == "__main__":
