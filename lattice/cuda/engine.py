@@ -10,7 +10,7 @@ from numba import cuda
 from lattice.contact import EdgeContact, lever_of
 from lattice.cuda import readings
 from lattice.cuda.card import Card, back, copied, over, over_nodes
-from lattice.cuda.kernels import Entries, Held, Lattice, Order, dissipate, look, move, overloaded, push
+from lattice.cuda.kernels import Contact, Entries, Held, Lattice, Order, dissipate, look, move, overloaded, push
 from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.layout import Motion
@@ -99,7 +99,7 @@ class CardEngine(ExplicitEngine):
         card, lattice = self.card, self._lattice()
         entries, order = _entries(load, touch)
         held = _held(self.mesh.held[: self.grid.nx])
-        contact = Touch(*(copied(a) for a in touch))
+        contact = Contact(*(copied(getattr(touch, name)) for name in Contact._fields))
         faces, (now, after) = copied(np.zeros(steps + 1, np.int64)), card.motions()
         lists = over(entries.row.size + held.row.size), over(order.first.size - 1)
         for step in range(steps):

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from numba import cuda
 
 from lattice.cuda.law import at_node, force, membrane_sums, point, power_of_springs, reached
-from lattice.explicit.forces import Touch
 from lattice.explicit.layout import PHI_X, U_X, HalfSprings, Intact, Motion, Pace, PerNode, W
 from lattice.explicit.screen import Screen
 from lattice.grid import Array, IntArray
@@ -43,6 +42,16 @@ class Entries(NamedTuple):
     contact: Array  #: (m, 3) sum over the sub-steps [N]
 
 
+class Contact(NamedTuple):
+    """What of `explicit.forces.Touch` is on the card, (m, ...) each."""
+
+    height: Array
+    lead: Array
+    at: Array
+    force: Array
+    tangent: Array
+
+
 class Order(NamedTuple):
     """Which entries push a node, node after node."""
 
@@ -65,7 +74,7 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 @kernel
 def look(
-    step: int, faces: IntArray, motion: Motion, lattice: Lattice, touch: Touch, entries: Entries, held: Held
+    step: int, faces: IntArray, motion: Motion, lattice: Lattice, touch: Contact, entries: Entries, held: Held
 ) -> None:
     """Before a sub-step, a thread for each entry and then each held node: contact, half the power, pull."""
     e, n = cuda.grid(1), entries.row.size
@@ -75,7 +84,7 @@ def look(
         at = e - n
         held.pull[at] -= force(held.row[at], held.column[at], motion.y, lattice.intact, lattice.springs)[U_X]
         return
-    i, j, k = entries.row[e], entries.column[e], e - (n - touch.row.size)
+    i, j, k = entries.row[e], entries.column[e], e - (n - touch.height.size)
     if k >= 0:
         height, lead = touch.height[k], touch.lead[k]
         now = point(i, j, height, lead, motion, lattice.pace.alpha)
