@@ -18,6 +18,7 @@ CARD = ("fracture.device='cuda'", "fracture.propagation='dynamic'")
 RUN = """
 import sys
 from cosim.build import build
+from cosim.checkpoint.graph import graph_of
 from cosim.scenario.loading import load_scenario
 states = []
 for device in ("cuda", "cpu"):
@@ -26,6 +27,7 @@ for device in ("cuda", "cpu"):
     print(type(scheduler.sheet.sheet.engine).__name__)
     for _ in range(2):
         scheduler.macro_step()
+    graph_of(scheduler)  # a checkpoint keeps it
     states.append(scheduler.sheet.sheet.state.u)
 card, host = states
 assert abs(host).max() > 0.0
