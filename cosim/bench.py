@@ -39,8 +39,12 @@ BENCHMARKS = (
     Benchmark("rubble", "rubble_speed.py", ("--repeat", "3"), "500 blocks beside plain pymunk with the same pile"),
     Benchmark("recording", "recording_cost.py", (), "a run with its recording beside the same run without"),
     Benchmark(
-        "growth", "engine_cost.py", ("--sizes", "40", "60", "120"), "implicit engine against the number of nodes"
+        "growth",
+        "growth.py",
+        ("--sizes", "40", "60", "120", "--limit", "60"),
+        "breaking only against the number of nodes",
     ),
+    Benchmark("implicit", "engine_cost.py", ("--sizes", "60", "--runs", "60"), "what the implicit engine's parts cost"),
     Benchmark("vode", "engine_against_vode.py", ("--budget", "15"), "implicit engine beside VODE on the same floe"),
     Benchmark("startup", "startup.py", ("--quick",), "time until commands and runs have begun"),
 )

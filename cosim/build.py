@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cosim.build_engine import explicit_engine
 from cosim.build_motion import build_motion, repeats_of
 from cosim.build_rubble import build_rubble, filling_rate, initial_rubble
 from cosim.errors import InputError
@@ -34,7 +35,6 @@ from coupling.steering import ByPower, Steering, fixed
 from lattice.cracks.beam import Beam
 from lattice.cracks.make import Measured, cracking_sheet
 from lattice.criteria.table import chosen
-from lattice.explicit.engine import ExplicitEngine
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
 from lattice.fragments import front_rows
@@ -201,7 +201,8 @@ def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
         except ValueError as error:
             raise InputError(f"{scenario.name}: {error}") from error
     if dynamic:
-        return ExplicitSheet(ExplicitEngine(grid, ice, springs, window, **options), criteria=criteria)
+        engine = explicit_engine(scenario.fracture.device)
+        return ExplicitSheet(engine(grid, ice, springs, window, **options), criteria=criteria)
     windows = max(1, round(scenario.fracture.longest_step / window))
     return Sheet(Engine(grid, ice, springs, **options), window, criteria=criteria, long_step=windows)
 

@@ -21,8 +21,8 @@ from lattice.criteria.judge import EVERY, Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.booking import BookedFloe
 from lattice.explicit.easing import Easing
-from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import touch_at
+from lattice.explicit.engine import ExplicitEngine
+from lattice.explicit.forces import Marched, touch_at
 from lattice.explicit.screen import SCREENED
 from lattice.explicit.window import Window
 from lattice.floe import LOOSE, Floe, Release
@@ -107,7 +107,7 @@ class ExplicitSheet(BookedFloe):
         start, present, out = self.state, self.present.copy(), Outcome()
         self.let_go(t, contact, out, release)
         keep(loads, self.present)
-        window = Window.begin(t, start, loads, contact, self.grid.ny, self.held)
+        window = Window.begin(t, start, loads, contact, self.grid.ny, self.engine.path(), self.held)
         self._begin(window)
         done = 0
         while done < self.engine.sub_steps:
@@ -140,10 +140,10 @@ class ExplicitSheet(BookedFloe):
         e, contact = self.engine, w.contact
         steps = min(self.block, e.sub_steps - done, self._meet(w, done))
         touch = e.touch(w.t + (done + 0.5 * steps) * e.dt, contact)
-        e.deflections(w.before)
+        e.look(w.path)
         out = e.march(steps, w.load, touch, self._lively)
         time = out.steps * e.dt
-        e.add_path(time, w.before, w.q)
+        e.add_path(time, w.path)
         w.impulse[contact.nodes] += time * out.contact
         self._book(w, out, touch)
         self._hold(w, time, out.hold - self.energy.on_held(contact.nodes, out.contact))

@@ -185,6 +185,10 @@ class Fracture(Section):
     #: longest step of the sheet while nothing fails and no rubble touches it; for open cracks. Default four windows [s]
     longest_step: Annotated[Time, Limits("1 us", "100 s", "50 ms")] = None
 
+    #: where the sub-steps of the explicit engine are made; cuda: on a graphics card of NVIDIA, with the extra gpu, for
+    #: open cracks with dynamic propagation
+    device: Literal["cpu", "cuda"] = "cpu"
+
     @property
     def marches(self) -> bool:
         """Whether the sheet is on the explicit engine."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from lattice.explicit.engine import ExplicitEngine, Marched
-from lattice.explicit.forces import PointForces, Touch
+from lattice.explicit.engine import ExplicitEngine
+from lattice.explicit.forces import Marched, PointForces, Touch
 from lattice.explicit.window import Window
 from lattice.floe import Floe
 from lattice.grid import BoolArray, IntArray

@@ -7,7 +7,6 @@ frequency, damping included; failed cells only lower that frequency, since their
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,11 +16,11 @@ from lattice.assembly import assemble
 from lattice.contact import EdgeContact, lever_of
 from lattice.criteria.laws import combined_tension
 from lattice.explicit import layout
-from lattice.explicit.forces import Made, PointForces, Sums, Touch, touch_at
+from lattice.explicit.forces import Made, Marched, PointForces, Sums, Touch, touch_at
 from lattice.explicit.kernels import pull_of_springs, push, sweep, unpack
 from lattice.explicit.layout import Motion, PerNode
 from lattice.explicit.march import march
-from lattice.explicit.readings import add_path, deflections, points
+from lattice.explicit.readings import Path, add_path, deflections, points
 from lattice.explicit.screen import Judge, screen_of, thresholds
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
@@ -45,19 +44,6 @@ class SubSteps(NamedTuple):
 
 
 TRUE_INERTIA = SubSteps()  #: as long as is stable
-
-
-@dataclass(frozen=True)
-class Marched:
-    """Some sub-steps."""
-
-    steps: int
-    failed: bool  #: a cell is overloaded at the end of the last one
-    contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
-    contact_work: float  #: [J]
-    work: Array  #: (loads,) of the other forces [J]
-    loss: float  #: taken by hydrodynamic and material damping [J]
-    hold: float  #: mean force along x that held nodes take from all cells [N]
 
 
 class ExplicitEngine(Engine):
@@ -211,13 +197,17 @@ class ExplicitEngine(Engine):
         unpack(motion, ago, self.grid.ny, u, q)
         return u, q
 
-    def deflections(self, q: Array) -> None:
-        """Writes w, phi_x and phi_y of all nodes now into q (n, 3)."""
-        deflections(self.motion, self.alpha, self.grid.ny, q)
+    def path(self) -> Path:
+        """That of a window, for `look` and `add_path`."""
+        return Path(self.grid.nodes)
 
-    def add_path(self, time: float, before: Array, path: Array) -> None:
-        """Adds what they do in a ``time`` [s] to their integral, by the trapezoidal rule; both (n, 3)."""
-        add_path(self.motion, self.alpha, self.grid.ny, 0.5 * time, before, path)
+    def look(self, path: Path) -> None:
+        """Sub-steps begin."""
+        deflections(self.motion, self.alpha, self.grid.ny, path.before)
+
+    def add_path(self, time: float, path: Path) -> None:
+        """They have taken a ``time`` [s]; by the trapezoidal rule."""
+        add_path(self.motion, self.alpha, self.grid.ny, 0.5 * time, path.before, path.sum)
 
     # ---- forces ------------------------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -59,6 +60,19 @@ class Made(NamedTuple):
     contact_work: float  #: sum of the power of the contact [W]
     loss: float  #: work of damping in the sub-steps that were looked at [J]
     hold: float  #: sum of the force along x that held nodes take from all cells [N]
+
+
+@dataclass(frozen=True)
+class Marched:
+    """Some sub-steps."""
+
+    steps: int
+    failed: bool  #: a cell is overloaded at the end of the last one
+    contact: Array  #: mean force on the nodes of the contact, (m, 3) [N]
+    contact_work: float  #: [J]
+    work: Array  #: (loads,) of the other forces [J]
+    loss: float  #: taken by hydrodynamic and material damping [J]
+    hold: float  #: mean force along x that held nodes take from all cells [N]
 
 
 NOTHING = PointForces(np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros((0, 5)), np.zeros(1, np.int64))

@@ -9,6 +9,18 @@ from lattice.explicit.layout import PHI_X, U_X, Motion, W
 from lattice.grid import Array, IntArray
 
 
+class Path:
+    """Integral over a window of the deflection and the rotations of all nodes, from block to block of sub-steps."""
+
+    def __init__(self, nodes: int):
+        self.before = np.zeros((nodes, 3))  #: when the present sub-steps began [m], [rad]
+        self.sum = np.zeros((nodes, 3))  #: until then [m s], [rad s]
+
+    def total(self) -> Array:
+        """The integral, (nodes, 3) [m s], [rad s]."""
+        return self.sum
+
+
 @compiled(nogil=True)
 def points(nodes: IntArray, columns: int, height: Array, lead: Array, motion: Motion, ago: float) -> Array:
     """`contact.point_displacement` of nodes now, y - ago v, with ``columns`` nodes across; (m, 3) [m]."""

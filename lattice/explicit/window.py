@@ -10,6 +10,7 @@ import numpy as np
 from lattice.contact import EdgeContact
 from lattice.explicit.forces import NOTHING, PointForces, Pressed, point_forces, pressed
 from lattice.explicit.layout import U_X, W
+from lattice.explicit.readings import Path
 from lattice.grid import Array, BoolArray, IntArray
 from lattice.loads import Loads, NodeLoad, keep
 from lattice.reaction import Pair
@@ -26,10 +27,9 @@ class Window:
     contact: EdgeContact
     columns: int  #: nodes across
     impulse: Array  #: (n, 3) of the contact [N s]
-    q: Array  #: (n, 3) of the deflection and rotation [m s], [rad s]
+    path: Path  #: of deflection and rotation
     push: Array  #: (loads, 2) impulse of each load along x and z [N s]
     held: BoolArray  #: (n,) nodes that are held along x
-    before: Array  #: (n, 3) deflection and rotation when the present sub-steps began [m], [rad]
     load: PointForces = NOTHING  #: the loads on nodes that are still in the lattice
     hold: float = 0.0  #: impulse along x of the held nodes on the sheet, less what loads bring to them at once [N s]
 
@@ -39,11 +39,12 @@ class Window:
         self._look_at(self.loads)
 
     @classmethod
-    def begin(cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int, held: BoolArray) -> Window:
+    def begin(
+        cls, t: float, start: State, loads: Loads, contact: EdgeContact, columns: int, path: Path, held: BoolArray
+    ) -> Window:
         """A window that begins with this state; ``columns`` nodes across, of which those ``held`` (n,) stand still."""
-        impulse, q, before = (np.zeros((len(start.q), 3)) for _ in range(3))
-        push = np.zeros((len(loads), 2))
-        return cls(t, start, loads, contact, columns, impulse, q, push, held=held, before=before)
+        impulse, push = np.zeros((len(start.q), 3)), np.zeros((len(loads), 2))
+        return cls(t, start, loads, contact, columns, impulse, path, push, held=held)
 
     def keep(self, present: BoolArray) -> None:
         """Takes the loads off nodes that have left."""
@@ -72,7 +73,7 @@ class Window:
 
     def mean(self, dt: float) -> State:
         """Mean deflection and rotation over a window of ``dt`` [s]; the rest is that of its start."""
-        return State(self.start.u, self.q / dt, self.start.u_dot, self.start.q_dot)
+        return State(self.start.u, self.path.total() / dt, self.start.u_dot, self.start.q_dot)
 
     def contact_mean(self, dt: float) -> tuple[Array, IntArray]:
         """Mean contact force (m, 3) [N] and its nodes (m,): those of the edge now, then others that have had any."""

@@ -206,6 +206,7 @@ def test_every_rule_can_be_broken(tmp_path):
         "duration_is_whole": ["scenario.duration='10.01 s'"],
         "frames_are_whole": ["recording.every='10 ms'"],
         "fields_are_drawn_or_read": ["ice.strength_field={}"],
+        "card_marches_open_cracks": ["fracture.device='cuda'"],
         "motion_has_its_keys": ["structure.motion.kind='modal'"],
         "something_moves": ["drift.velocity='0 m/s'"],
     }

@@ -72,7 +72,19 @@ def fields_are_drawn_or_read(m: Any) -> Faults:
             yield fault(f"ice.{name}.variation", "give either a variation or a file, for example variation = 0.2")
 
 
+def card_marches_open_cracks(m: Any) -> Faults:
+    """The card has the springs of the lattice and no layers; the implicit engine solves, which it cannot."""
+    f = m.fracture
+    if f.device == "cuda" and (f.cracks == "closing" or f.propagation == "quasi-static"):
+        change = "cracks = 'open'" if f.cracks == "closing" else "propagation = 'dynamic'"
+        yield fault(
+            "fracture.device",
+            f"cuda runs open cracks with dynamic propagation only: set fracture.{change}, or device = 'cpu'",
+        )
+
+
 RULES = (
+    card_marches_open_cracks,
     fields_are_drawn_or_read,
     stiffness_is_positive,
     ice_floats,
