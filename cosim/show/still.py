@@ -6,6 +6,7 @@ It is what ``cosim replay --screenshot`` writes and of which ``--video`` makes a
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 SIZE, DOTS = (16.0, 9.0), 100  #: of a picture [inch], and in an inch
 LEFT = 1.28  #: width of the left half over the right one
+WIDEST = 118  #: letters in a line of the lights
 
 
 class Stills:
@@ -84,7 +86,8 @@ class Stills:
         text, colour = "\u2713 within the limits of all lights", "#0072b2"
         if not found["trustworthy"]:
             text, colour = "\u2717 not trustworthy: " + "; ".join(found["because"]), "#b03a2e"
-        ax.text(0.02, 0.12, text, transform=ax.transAxes, fontsize=9, color=colour, wrap=True, bbox=box)
+        text = textwrap.fill(text, WIDEST)
+        ax.text(0.02, 0.12, text, transform=ax.transAxes, fontsize=9, color=colour, parse_math=False, bbox=box)
 
     def close(self) -> None:
         """Let go of the window."""

@@ -22,6 +22,7 @@ WATER_RGB, SKY, DEEP = "#5b93b5", "#f4f8fb", "#c9dbe6"
 SIDE_VIEW = (-0.74, -0.78, 0.42)  #: from which the camera looks, of its distance
 AIM = 0.25  #: behind the face, to which it looks, in half widths of what it frames; before a slope that does not end
 FAR = 4.8  #: distance of the camera in half widths of what it frames
+NEAR = 1.0  #: from the camera, nothing nearer is seen; all of the sheet in the picture is three times as far
 
 
 class View:
@@ -73,7 +74,7 @@ class View:
         self._plotter.camera.focal_point = tuple(target)
         self._plotter.camera.up = (0.0, 0.0, 1.0)
         self._plotter.camera.view_angle = 30.0
-        self._plotter.camera.clipping_range = (0.05 * self.reach, 80.0 * self.reach)
+        self._plotter.camera.clipping_range = (NEAR * self.reach, 80.0 * self.reach)
 
     def draw(self, picture: Picture) -> Array:
         """(height, width, 3) as bytes: the ice of a picture, the load as an arrow at its point of attack."""
@@ -122,7 +123,7 @@ class View:
             cracks = self._pv.PolyData(top, faces)
             cracks.cell_data["depth"] = depth
             look = {"cmap": [SHALLOW, CRACK], "clim": (0.0, 1.0), "show_scalar_bar": False, "opacity": 0.9}
-            _in_front(self._add("cracks", cracks, scalars="depth", lighting=False, **look), 60.0)
+            _in_front(self._add("cracks", cracks, scalars="depth", lighting=False, **look), 20.0)
         self._add("edges", grid.extract_feature_edges(40.0), color=EDGE, line_width=1.2, opacity=0.6)
 
     def _load(self, picture: Picture) -> None:

@@ -1,5 +1,6 @@
 """Plan and section: ice, water, structure, blocks and cracks are where they are, by colour and place."""
 
+import dataclasses
 import io
 
 import numpy as np
@@ -7,12 +8,13 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
-from cosim.recording.reader import read_run, recorded_pictures
+from cosim.recording.reader import read_run, recorded_pictures, recorded_structure
 from cosim.show.ice import plan, section
 from cosim.show.ice.figures import along_waterline, draw_waterline
 from cosim.show.ice.history import Failures, busiest, looks
 from cosim.show.ice.palette import BLOCK, STRUCTURE, WATER
 from cosim.show.ice.scene import scene_of
+from cosim.show.view3d import View
 from coupling.interface import Phase
 
 
@@ -161,3 +163,26 @@ def test_ice_on_a_slope_that_looks_up_is_not_drawn_as_hidden(run, seen):
         plan.draw_plan(ax, scene_of(replace(run, texts=texts)), seen["most load by sliding"])
         outlined = [c for c in ax.collections if c.get_linestyle()[0][1] is not None and c.get_zorder() < 7]
         assert len(outlined) == hidden, name
+
+
+def test_cracks_do_not_shine_through_what_lies_in_front(run, run_file, pictures):
+    """A sheet that is cracked throughout covers no more of a plate above it than one that is whole."""
+    last = pictures[-1]
+    sheet = dataclasses.replace(last.sheet, damage=np.ones_like(last.sheet.damage))
+    thickness, view = scene_of(run).thickness, View(scene_of(run), recorded_structure(run_file), (450, 450))
+    up = dataclasses.replace(last.blocks, outline=last.blocks.outline + thickness * np.array([-2.0, 1.2]))
+    seen = []
+    try:
+        for whole in (True, False):
+            elastic = np.full(len(sheet.intact), whole)
+            image = view.draw(dataclasses.replace(last, sheet=sheet, blocks=up, elastic=elastic)).astype(int)
+            colours = [np.array(ImageColor.getrgb(BLOCK[phase])) for phase in (Phase.ROTATING, Phase.SLIDING)]
+            dark = image.sum(axis=2) < 160
+            hue = [np.abs(image / image.sum(axis=2, keepdims=True) - c / c.sum()).max(axis=2) < 0.1 for c in colours]
+            seen.append(((hue[0] | hue[1]) & ~dark, dark))
+    finally:
+        view.close()
+    (blocks, _), (still, dark) = seen
+    assert dark.mean() > 0.1  # cracks are seen
+    assert blocks.sum() > 500
+    assert (still & blocks).sum() > 0.98 * blocks.sum()
