@@ -73,7 +73,7 @@ class Stills:
         ax.axis("off")
         about = f"{self._run.metadata['title']}\n{look.picture.t_ns / NS:.2f} s{_load(look.picture)}"
         _bar(ax)
-        box = {"fc": "w", "ec": "none", "alpha": 0.75, "pad": 6}
+        box = {"fc": "w", "ec": "none", "alpha": 0.88, "pad": 6}
         ax.text(0.02, 0.975, about, transform=ax.transAxes, va="top", fontsize=14, parse_math=False, bbox=box)
         top, middle, low = right.subfigures(3, 1, height_ratios=(1.15, 0.95, 1.1))
         draw_plan(_one(top), self._scene, look, fill=True)
