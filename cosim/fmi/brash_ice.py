@@ -72,7 +72,7 @@ class BrashIce(Fmi2Slave):  # type: ignore[misc]
 
     def terminate(self) -> None:
         """No step comes after it."""
-        self._driven.end()
+        self._driven.close()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         """One step; False, with a line in the log, if it cannot be done."""

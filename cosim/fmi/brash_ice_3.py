@@ -61,7 +61,7 @@ class BrashIce(Fmi3Slave):  # type: ignore[misc]
 
     def terminate(self) -> None:
         """No step comes after it."""
-        self._driven.end()
+        self._driven.close()
 
     def do_step(self, current_time: float, step_size: float) -> Any:
         """One step. With a line in the log, it is discarded if it is refused, and an error if the run has stopped."""

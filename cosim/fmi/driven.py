@@ -29,7 +29,7 @@ class Driven:
         """The case is built; errors as those of `Ice`."""
         self._ice, self._stopped = Ice(self.scenario), ""
 
-    def end(self) -> None:
+    def close(self) -> None:
         """Nothing comes after it but a new start."""
         self._stopped = "a step after the end"
 
