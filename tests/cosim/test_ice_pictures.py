@@ -9,12 +9,15 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
 from cosim.recording.reader import read_run, recorded_pictures, recorded_structure
+from cosim.recording.writer import Recorder
+from cosim.scenario.loading import load_scenario
 from cosim.show.ice import plan, section
 from cosim.show.ice.figures import along_waterline, draw_waterline
 from cosim.show.ice.history import Failures, busiest, looks
 from cosim.show.ice.palette import BLOCK, STRUCTURE, WATER
 from cosim.show.ice.scene import scene_of
 from cosim.show.view3d import View
+from cosim.simulation import run_scenario
 from coupling.interface import Phase
 
 
@@ -186,3 +189,39 @@ def test_cracks_do_not_shine_through_what_lies_in_front(run, run_file, pictures)
     assert dark.mean() > 0.1  # cracks are seen
     assert blocks.sum() > 500
     assert (still & blocks).sum() > 0.98 * blocks.sum()
+
+
+def test_a_structure_that_moves_is_drawn_where_it_is(tmp_path):
+    """A cone on a carriage, 1 m from where it was built: the ice presses where its outline is drawn."""
+    moves = ["drift.velocity='0 m/s'", "water.current=['0 m/s', '0 m/s']", "scenario.duration='2 s'"]
+    moves += ["structure.motion.kind='prescribed'", "structure.motion.velocity=['-0.5 m/s', '0 m/s', '0 m/s']"]
+    path = tmp_path / "moves.mcap"
+    with Recorder(path) as recorder:
+        run_scenario(load_scenario("first_cone", moves), [recorder])
+    run, last = read_run(path), list(recorded_pictures(path))[-1]
+    rests = scene_of(run)
+    there = rests.at(run, last.t_ns)
+    assert there.place == pytest.approx((-1.0, 0, 0, 0, 0, 0))
+    x, y, z = last.forces.position.T
+    assert len(x)
+    for scene, off in ((there, 0.0), (rests, 1.0)):
+        cuts = [scene.cut(float(at)) for at in y]
+        away = [np.hypot(*(cut - (a, c)).T).min() for cut, a, c in zip(cuts, x, z, strict=True)]
+        assert np.median(away) == pytest.approx(0.75 * off, abs=0.3)
+    assert there.waterline().min(axis=0) == pytest.approx(rests.waterline().min(axis=0) - (1.0, 0.0))
+    assert plan.extent(there, last, False)[0] == pytest.approx(plan.extent(rests, last, False)[0] - 1.0)
+    assert section.extent(there, 0.0)[0] == pytest.approx(section.extent(rests, 0.0)[0] - 1.0)
+    view = View(rests, recorded_structure(path), (200, 200))
+    try:
+        images = [view.draw(last, place).astype(int) for place in (rests.place, there.place)]
+    finally:
+        view.close()
+    assert (np.abs(images[0] - images[1]).max(axis=2) > 30).mean() > 0.02
+
+
+def test_a_structure_that_pitches_is_cut_turned(run):
+    """By a right angle about the waterline point: what was below is ahead."""
+    rests = scene_of(run)
+    turned = dataclasses.replace(rests, place=(0.0, 0.0, 0.0, 0.0, 0.5 * np.pi, 0.0))
+    x, z = rests.cut(0.0).T
+    assert turned.cut(0.0) == pytest.approx(np.column_stack((z, -x)))
