@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import platform
+import re
 import subprocess
 from functools import cache
-from importlib.metadata import version as installed
+from importlib import metadata
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
@@ -43,6 +44,12 @@ def _git(root: Path, *arguments: str) -> str:
         ["git", "-C", str(root), *arguments], capture_output=True, text=True, check=True, timeout=20, encoding="utf-8"
     )
     return done.stdout.strip()
+
+
+def installed(name: str) -> str:
+    """Version of a package, from the head of its metadata: to parse all of them takes 50 ms. PackageNotFoundError."""
+    found = re.search(r"^Version: *(\S+)", metadata.distribution(name).read_text("METADATA") or "", re.MULTILINE)
+    return metadata.version(name) if found is None else found[1]
 
 
 def libraries() -> dict[str, str]:

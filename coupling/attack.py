@@ -25,9 +25,10 @@ class PointForces:
 
     def moments(self, point: Array) -> Array:
         """Moments about a point (3,) [m]: (3, 3), rows by `Phase`, columns x, y, z [N m]."""
-        arms = np.cross(self.position - point, self.force)
+        (x, y, z), (fx, fy, fz) = (self.position - point).T, self.force.T
+        turning = np.stack((y * fz - z * fy, z * fx - x * fz, x * fy - y * fx), axis=1)
         out = np.zeros((len(Phase), 3))
-        np.add.at(out, self.phase, arms)
+        np.add.at(out, self.phase, turning)
         return out
 
 

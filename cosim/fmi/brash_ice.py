@@ -70,6 +70,10 @@ class BrashIce(Fmi2Slave):  # type: ignore[misc]
         """The case is built."""
         self._driven.start()
 
+    def terminate(self) -> None:
+        """No step comes after it."""
+        self._driven.close()
+
     def do_step(self, current_time: float, step_size: float) -> bool:
         """One step; False, with a line in the log, if it cannot be done."""
         _, wrong = self._driven.step(current_time, step_size)
@@ -78,7 +82,7 @@ class BrashIce(Fmi2Slave):  # type: ignore[misc]
         return not wrong
 
     def _get_fmu_state(self) -> dict[str, Any]:
-        return {"back": self._driven.save()}
+        return self._driven.state()
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        state["back"]()
+        self._driven.go_back(state)

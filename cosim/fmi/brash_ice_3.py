@@ -59,6 +59,10 @@ class BrashIce(Fmi3Slave):  # type: ignore[misc]
         """The case is built."""
         self._driven.start()
 
+    def terminate(self) -> None:
+        """No step comes after it."""
+        self._driven.close()
+
     def do_step(self, current_time: float, step_size: float) -> Any:
         """One step. With a line in the log, it is discarded if it is refused, and an error if the run has stopped."""
         can_go_on, wrong = self._driven.step(current_time, step_size)
@@ -69,7 +73,7 @@ class BrashIce(Fmi3Slave):  # type: ignore[misc]
         return Fmi3StepResult(status=status)
 
     def _get_fmu_state(self) -> dict[str, Any]:
-        return {"back": self._driven.save()}
+        return self._driven.state()
 
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        state["back"]()
+        self._driven.go_back(state)

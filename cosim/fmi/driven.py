@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,11 @@ class Driven:
 
     def start(self) -> None:
         """The case is built; errors as those of `Ice`."""
-        self._ice = Ice(self.scenario)
+        self._ice, self._stopped = Ice(self.scenario), ""
+
+    def close(self) -> None:
+        """Nothing comes after it but a new start."""
+        self._stopped = "a step after the end"
 
     def step(self, t: float, length: float) -> tuple[bool, str]:
         """One step. Whether the run can go on from here, and what is wrong: nothing if the step was done."""
@@ -44,6 +49,16 @@ class Driven:
             return False, self._stopped
         self.values |= {TIME: self._ice.t, **self._ice.loads}
         return True, ""
+
+    def state(self) -> dict[str, Any]:
+        """What a master keeps to come back to."""
+        return {"of": self, "back": self.save()}
+
+    def go_back(self, state: dict[str, Any]) -> None:
+        """To a state of this instance; ValueError for one of another instance."""
+        if state["of"] is not self:
+            raise ValueError("a state of another instance of the ice")
+        state["back"]()
 
     def save(self) -> Callable[[], None]:
         """The case and its values between two steps; calling it sets them back."""

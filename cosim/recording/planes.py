@@ -21,7 +21,8 @@ def pack(values: Sequence[int] | IntArray) -> bytes:
     whole = np.asarray(values, np.int64).ravel()
     if whole.size and np.abs(whole).max() >= LARGEST:
         raise ValueError(f"{np.abs(whole).max()} is too large a multiple of the quantum; it has to be below {LARGEST}")
-    step = np.diff(whole, prepend=0)
+    step = whole.copy()
+    step[1:] -= whole[:-1]
     folded = np.where(step < 0, -2 * step - 1, 2 * step).astype("<u4")  # small whichever their sign
     return folded.view(np.uint8).reshape(-1, WIDTH).T.tobytes()
 

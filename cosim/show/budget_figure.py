@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,16 +29,20 @@ COLOURS = {
     "sea_bed": "#8c510a",
     "staggering": "#f0e442",
 }
-OTHER = "#1d2733"  #: of loads on the sheet
+#: of loads on the sheet, one after the other
+OTHERS = ("#1d2733", "#d55e00", "#7a5195", "#9acd32", "#8c2d4a", "#6b7f3f")
 
 
 def draw(figure: Figure, run: RunData) -> None:
-    """Terms over time, stacked from zero up where they lift the structure and down where not; the total on top."""
+    """Terms over time, stacked from zero up where they lift the structure and down where not; the total on top.
+
+    Terms that are zero in every window are left out.
+    """
     run = run.lasting
     axes = figure.subplots(2, 1, sharex=True)
     scale = scale_of((np.abs(run.component(axis)).max() for axis in ("fz", "fx")), "N")
-    drawn = carriers(run)
-    colours = [COLOURS.get(name, OTHER) for name in drawn]
+    drawn = [name for name in carriers(run) if any(np.any(run.budget[f"{axis}_{name}"]) for axis in ("fz", "fx"))]
+    colours = colours_of(drawn)
     for ax, axis in zip(axes, ("fz", "fx"), strict=True):
         terms = np.array([run.budget[f"{axis}_{name}"] for name in drawn]) / scale.size
         for side, label in ((np.maximum(terms, 0.0), True), (np.minimum(terms, 0.0), False)):
@@ -49,6 +55,12 @@ def draw(figure: Figure, run: RunData) -> None:
     figure.legend(*axes[0].get_legend_handles_labels(), ncols=8, fontsize=7, loc="outside upper center")
     axes[1].set_xlabel("time [s]")
     axes[1].set_xlim(0.0, run.t[-1])
+
+
+def colours_of(names: Sequence[str]) -> list[str]:
+    """A colour for every term, none twice as long as there are no more than six loads on the sheet."""
+    more = cycle(OTHERS)
+    return [COLOURS[name] if name in COLOURS else next(more) for name in names]
 
 
 def _focus(ax: Axes, terms: Array, total: Array) -> None:

@@ -32,13 +32,14 @@ from cosim.show.layout import TIMELINE, blueprint, load_scale
 from cosim.show.opening import opened
 from cosim.show.pictures import still_meshes
 from cosim.show.viewer import screen_viewer, web_viewer
-from coupling.interface import FREEDOMS, NS, PHASES, Array, Event, Phase
+from coupling.interface import NS, PHASES, Array, Event, Phase
 from coupling.structure.moved import turned
 
 APPLICATION = "cosim"
 TOTAL_RGB, MEASURED_RGB, DRIFT_RGB = (140, 150, 165), (204, 121, 167), (120, 200, 255)
 Measured = Callable[[RunData], Series] | None  #: gives a measured series in the time of a run
 #: of the load: entity, name, phase, colour; drawn in the order of their entities, the total first: it hides no phase
+OUTLINE = "/structure"  #: how names of outlines of the structure end
 CURVES = (("all", "total", None, TOTAL_RGB), *((p, p, p, shapes.PHASE_RGB[Phase(k)]) for k, p in enumerate(PHASES)))
 
 
@@ -87,11 +88,11 @@ def send(sink: rr.RecordingStream, recording: Path, run: RunData, measured: Meas
     for event in run.events:
         send_event(sink, event)
     scene, section = scene_of(run), shown_section(run, recording)
-    send_still(sink, recording, scene, section)
+    send_still(sink, recording, scene, section, moves=bool(run.motion))
     for picture in recorded_pictures(recording):
         send_picture(sink, picture, scene, section)
         if run.motion:
-            sink.log("world/structure", _placed(run, picture.t_ns))
+            _send_moved(sink, scene.at(run, picture.t_ns), section)
     sink.flush()
 
 
@@ -101,12 +102,13 @@ def send_event(sink: rr.RecordingStream, event: Event) -> None:
     sink.log("events", rr.TextLog(f"{event.kind}: {event.text}", level=_level(event.kind)))
 
 
-def send_still(sink: rr.RecordingStream, recording: Path, scene: Scene, section: int) -> None:
-    """What does not move."""
+def send_still(sink: rr.RecordingStream, recording: Path, scene: Scene, section: int, moves: bool = False) -> None:
+    """What does not move; outlines of the structure only if it does not."""
     for mesh in still_meshes(recorded_structure(recording), scene):
         sink.log(f"world/{mesh.name}", _mesh(mesh), static=True)
     for strips in still_strips(scene, section):
-        sink.log(strips.name, _strips(strips), static=True)
+        if not (moves and strips.name.endswith(OUTLINE)):
+            sink.log(strips.name, _strips(strips), static=True)
     h = scene.thickness
     start = [[float(-scene.reach - 8.0 * h), 0.0, 4.0 * h]]
     arrow = rr.Arrows3D(origins=start, vectors=[[6.0 * h, 0.0, 0.0]], colors=[DRIFT_RGB], radii=0.12 * h)
@@ -123,11 +125,13 @@ def send_picture(sink: rr.RecordingStream, picture: Picture, scene: Scene, secti
     sink.log("world/load", _arrow(picture, scene))
 
 
-def _placed(run: RunData, t_ns: int) -> rr.Transform3D:
-    """Where a structure that moves is."""
-    k = min(int(np.searchsorted(run.t_ns, t_ns)), len(run.t_ns) - 1)
-    place = np.array([run.motion[name][k] for name in FREEDOMS])
-    return rr.Transform3D(translation=place[:3], mat3x3=turned(place[3:]))
+def _send_moved(sink: rr.RecordingStream, scene: Scene, section: int) -> None:
+    """Where a structure that moves is, at the time of the picture before."""
+    place = np.array(scene.place)
+    sink.log("world/structure", rr.Transform3D(translation=place[:3], mat3x3=turned(place[3:])))
+    for strips in still_strips(scene, section):
+        if strips.name.endswith(OUTLINE):
+            sink.log(strips.name, _strips(strips))
 
 
 def shown_section(run: RunData, recording: Path) -> int:

@@ -110,7 +110,10 @@ def _frame(run: RunData, there: set[str]) -> dict[str, Any]:
 def _ice(run: RunData, pictures: list[Picture]) -> list[dict[str, str]]:
     """Plan and section at the peaks, and the load along the waterline."""
     scene = scene_of(run)
-    out = [picture(look.title[:1].upper() + look.title[1:], draw_look, scene, look) for look in looks(run, pictures)]
+    out = [
+        picture(look.title[:1].upper() + look.title[1:], draw_look, scene.at(run, look.picture.t_ns), look)
+        for look in looks(run, pictures)
+    ]
     return [*out, picture("Load along the waterline, by place across the drift", draw_waterline, scene, pictures)]
 
 

@@ -6,6 +6,7 @@ It is what ``cosim replay --screenshot`` writes and of which ``--video`` makes a
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 SIZE, DOTS = (16.0, 9.0), 100  #: of a picture [inch], and in an inch
 LEFT = 1.28  #: width of the left half over the right one
+WIDEST = 118  #: letters in a line of the lights
 
 
 class Stills:
@@ -67,15 +69,16 @@ class Stills:
     def _compose(self, figure: Figure, look: Look) -> None:
         left, right = _split(figure)
         ax = left.add_axes((0.0, 0.0, 1.0, 1.0))
-        ax.imshow(self._view.draw(look.picture), aspect="auto", interpolation="antialiased")
+        scene = self._scene.at(self._run, look.picture.t_ns)
+        ax.imshow(self._view.draw(look.picture, scene.place), aspect="auto", interpolation="antialiased")
         ax.axis("off")
         about = f"{self._run.metadata['title']}\n{look.picture.t_ns / NS:.2f} s{_load(look.picture)}"
         _bar(ax)
-        box = {"fc": "w", "ec": "none", "alpha": 0.75, "pad": 6}
+        box = {"fc": "w", "ec": "none", "alpha": 0.88, "pad": 6}
         ax.text(0.02, 0.975, about, transform=ax.transAxes, va="top", fontsize=14, parse_math=False, bbox=box)
         top, middle, low = right.subfigures(3, 1, height_ratios=(1.15, 0.95, 1.1))
-        draw_plan(_one(top), self._scene, look, fill=True)
-        draw_section(_one(middle), self._scene, look.picture, look.section, fill=True)
+        draw_plan(_one(top), scene, look, fill=True)
+        draw_section(_one(middle), scene, look.picture, look.section, fill=True)
         low.subplots_adjust(left=0.12, right=0.97, top=0.9, bottom=0.17, hspace=0.12)
         draw_loads(low, self._run)
         for axes in low.axes:
@@ -84,7 +87,8 @@ class Stills:
         text, colour = "\u2713 within the limits of all lights", "#0072b2"
         if not found["trustworthy"]:
             text, colour = "\u2717 not trustworthy: " + "; ".join(found["because"]), "#b03a2e"
-        ax.text(0.02, 0.12, text, transform=ax.transAxes, fontsize=9, color=colour, wrap=True, bbox=box)
+        text = textwrap.fill(text, WIDEST)
+        ax.text(0.02, 0.12, text, transform=ax.transAxes, fontsize=9, color=colour, parse_math=False, bbox=box)
 
     def close(self) -> None:
         """Let go of the window."""

@@ -17,11 +17,13 @@ from cosim.show.ice.palette import BLOCK, CRACK, EDGE, FORCE, SHALLOW, STRUCTURE
 from cosim.show.ice.plan import cracked_cells
 from cosim.show.ice.scene import Scene
 from coupling.interface import Array, IntArray, Phase
+from coupling.structure.moved import turned
 
 WATER_RGB, SKY, DEEP = "#5b93b5", "#f4f8fb", "#c9dbe6"
 SIDE_VIEW = (-0.74, -0.78, 0.42)  #: from which the camera looks, of its distance
 AIM = 0.25  #: behind the face, to which it looks, in half widths of what it frames; before a slope that does not end
 FAR = 4.8  #: distance of the camera in half widths of what it frames
+NEAR = 1.0  #: from the camera, nothing nearer is seen; all of the sheet in the picture is three times as far
 
 
 class View:
@@ -69,15 +71,30 @@ class View:
         front = float(np.nan_to_num(self._scene.structure.face_x(0.0, 0.0)))
         aim = AIM if np.isfinite(self._scene.structure.half_width) else -AIM
         target = np.array([front + aim * self.reach, 0.0, 0.0])
-        self._plotter.camera.position = tuple(target + FAR * self.reach * np.array(SIDE_VIEW))
-        self._plotter.camera.focal_point = tuple(target)
+        self._target = target
+        self._place((0.0,) * 6)
         self._plotter.camera.up = (0.0, 0.0, 1.0)
         self._plotter.camera.view_angle = 30.0
-        self._plotter.camera.clipping_range = (0.05 * self.reach, 80.0 * self.reach)
 
-    def draw(self, picture: Picture) -> Array:
-        """(height, width, 3) as bytes: the ice of a picture, the load as an arrow at its point of attack."""
+    def _place(self, place: tuple[float, ...]) -> None:
+        """The structure where it is, surge to yaw, the camera and the water with it."""
+        moved, along = np.eye(4), np.eye(4)
+        moved[:3, :3], moved[:3, 3], along[:2, 3] = turned(np.array(place[3:])), place[:3], place[:2]
+        for name, matrix in (("structure", moved), ("tower", moved), ("water", along)):
+            if name in self._plotter.actors:
+                self._plotter.actors[name].user_matrix = matrix
+        target = self._target + along[:3, 3]
+        self._plotter.camera.position = tuple(target + FAR * self.reach * np.array(SIDE_VIEW))
+        self._plotter.camera.focal_point = tuple(target)
+        self._plotter.camera.clipping_range = (NEAR * self.reach, 80.0 * self.reach)
+
+    def draw(self, picture: Picture, place: tuple[float, ...] = (0.0,) * 6) -> Array:
+        """(height, width, 3) as bytes: the ice of a picture, the load as an arrow at its point of attack.
+
+        ``place``: surge to yaw of the structure [m, rad].
+        """
         p = self._plotter
+        self._place(place)
         for name in self._moving:
             p.remove_actor(name, render=False)
         self._moving = []
@@ -122,7 +139,7 @@ class View:
             cracks = self._pv.PolyData(top, faces)
             cracks.cell_data["depth"] = depth
             look = {"cmap": [SHALLOW, CRACK], "clim": (0.0, 1.0), "show_scalar_bar": False, "opacity": 0.9}
-            _in_front(self._add("cracks", cracks, scalars="depth", lighting=False, **look), 60.0)
+            _in_front(self._add("cracks", cracks, scalars="depth", lighting=False, **look), 20.0)
         self._add("edges", grid.extract_feature_edges(40.0), color=EDGE, line_width=1.2, opacity=0.6)
 
     def _load(self, picture: Picture) -> None:

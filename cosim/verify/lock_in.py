@@ -4,7 +4,9 @@ The ice, cone and drift of `scenarios/narrow_cone` on a coarse mesh. First the c
 f_b, one over the mean time between peaks of its mean over `SMOOTH`. Then it stands on one mode of frequency f_1 = r
 f_b, the stiffness k at the waterline being the same for every r and the mass k / (2 pi f_1)^2. Beside each coupled run
 stands the answer of the same mode to the load of the cone that stood still: the difference is what the motion does to
-the ice.
+the ice. With ``draws`` all of it is done again in other ice: its strength varies from cell to cell by ``variation``
+(deviation over mean) over ``correlation`` [m], each draw with a seed of its own. f_b is the mean over the
+draws, of which the cone at rest has at least ``rests``; a run is set beside the cone at rest in the same ice.
 
 Amplifications are over k^-1 F of the cone that stood still; for a sine of frequency f_b its deviation grows by
 1 / sqrt((1 - (1/r)^2)^2 + (2 zeta / r)^2) (Chopra, Dynamics of Structures, 3.2), which the measure itself must give.
@@ -21,7 +23,7 @@ from cosim.analysis.levels import peaks_of
 from cosim.scenario.loading import load_scenario
 from cosim.simulation import RunResult, run_scenario
 from cosim.verify.case import CaseResult, Figure, Quantity, at_most, near, value
-from cosim.verify.lock_in_figure import draw
+from cosim.verify.lock_in_figure import draw, ratio_of, told
 from coupling.interface import Array
 from coupling.structure.motion import LinearMotion, modal
 
@@ -36,6 +38,11 @@ PARAMETERS: dict[str, Any] = {
     "drift": 0.8,
     "window": 0.04,
     "rubble": True,
+    "added_mass": 0.0,
+    "draws": 1,
+    "rests": 1,
+    "variation": 0.0,
+    "correlation": 2.0,
     "scenario": "narrow_cone",
 }
 SURGE = np.array([[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]])
@@ -52,6 +59,7 @@ class Answer:
     largest: float  #: displacement [m]
     load_deviation: float  #: of the mean over the averaging time [N]
     load_largest: float  #: of the same [N]
+    load_mean: float  #: of the same [N]
     breaking: float  #: frequency of the peaks of the load [Hz]; 0: fewer than two
     speed: float = 0.0  #: largest of the structure [m/s]
     residual: float = 0.0  #: of the structure's books, as part of what it received
@@ -63,12 +71,16 @@ def tower(p: dict[str, Any], frequency: float) -> LinearMotion:
     return modal(np.array([frequency]), np.array([p["damping"]]), np.array([mass]), SURGE)
 
 
-def run_of(p: dict[str, Any], frequency: float | None) -> RunResult:
-    """The run with the tower of this frequency; None: the cone stands still."""
+def run_of(p: dict[str, Any], frequency: float | None, draw: int = 0) -> RunResult:
+    """The run with the tower of this frequency in the ice of a draw; None: the cone stands still."""
     length, width = p["size"]
     texts = [f"sheet.length='{length} m'", f"sheet.width='{width} m'", f"sheet.nodes={p['nodes']}"]
     texts += [f"scenario.duration='{p['seconds']} s'", f"drift.velocity='{p['drift']} m/s'"]
     texts += [f"coupling.window='{p['window']} s'", f"rubble.enabled={str(p['rubble']).lower()}"]
+    texts += [f"scenario.seed={draw + 1}", f"water.added_mass={p['added_mass']}"]
+    if p["variation"]:
+        field = f"{{variation={p['variation']}, correlation_length='{p['correlation']} m'}}"
+        texts += [f"ice.strength_field={field}"]
     if frequency is not None:
         omega = 2.0 * np.pi * frequency
         mass, damping = p["stiffness"] / omega**2, 2.0 * p["damping"] * p["stiffness"] / omega
@@ -104,6 +116,7 @@ def measured(p: dict[str, Any], result: RunResult) -> Answer:
         float(way.max()),
         float(load.std()),
         float(load.max()),
+        float(load.mean()),
         (len(places) - 1) / span if span else 0.0,
         speed,
         residual,
@@ -118,20 +131,35 @@ def sine_amplification(p: dict[str, Any], ratio: float) -> tuple[float, float]:
     return float(way.std() * p["stiffness"] * np.sqrt(2.0)), float(formula)
 
 
+@dataclass(frozen=True)
+class Draw:
+    """All that was run in one ice."""
+
+    still: Answer
+    found: list[Answer]  #: one for each ratio
+    alone: Array  #: (r, 2) deviation and largest displacement [m] under the load of the cone that stood still
+    curves: Array  #: (c, 3) ratio, and the same
+
+
+def drawn(p: dict[str, Any], rest: RunResult, f_b: float, draw: int) -> Draw:
+    """The sweep in the ice in which the cone stood still."""
+    load, after = rest.data.component("fx"), rest.data.t > p["skip"]
+    ways = np.array([answer_to(tower(p, r * f_b), rest.data.t, load)[after] for r in (*p["ratios"], *DENSE)])
+    both, n = np.column_stack((ways.std(axis=1), ways.max(axis=1))), len(p["ratios"])
+    found = [measured(p, run_of(p, r * f_b, draw)) for r in p["ratios"]]
+    return Draw(measured(p, rest), found, both[:n], np.column_stack((DENSE, both[n:])))
+
+
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
-    """The cone that stands still, and the sweep; ``quick``: one ratio, 3 s."""
+    """The cone that stands still, and the sweep, in each draw; ``quick``: one ratio, 3 s, one draw."""
     if quick:
-        p = {**p, "ratios": p["ratios"][:1], "seconds": 3.0, "skip": 0.5}
-    alone = run_of(p, None)
-    rests, still = alone.data, measured(p, alone)
-    f_b = still.breaking or 1.0
-    found = [measured(p, run_of(p, r * f_b)) for r in p["ratios"]]
-    load, after = rests.component("fx"), rests.t > p["skip"]
-    ways = np.array([answer_to(tower(p, r * f_b), rests.t, load)[after] for r in (*p["ratios"], *DENSE)])
-    n = len(p["ratios"])
-    quantities = [*_checks(p, found), *_values(p, still, found, ways[:n])]
-    curves = np.column_stack((DENSE, ways[n:].std(axis=1), ways[n:].max(axis=1)))
-    figure = Figure("sweep", "A tower before ice that breaks", lambda sheet: draw(sheet, p, still, found, curves))
+        p = {**p, "ratios": p["ratios"][:1], "seconds": 3.0, "skip": 0.5, "draws": 1, "rests": 1}
+    rests = [run_of(p, None, k) for k in range(max(p["draws"], p["rests"]))]
+    breaking = [b for b in (measured(p, rest).breaking for rest in rests) if b]
+    f_b = float(np.mean(breaking)) if breaking else 1.0
+    draws = [drawn(p, rests[k], f_b, k) for k in range(p["draws"])]
+    quantities = [*_checks(p, [a for d in draws for a in d.found]), *_values(p, f_b, breaking, draws)]
+    figure = Figure("sweep", "A tower before ice that breaks", lambda sheet: draw(sheet, p, f_b, draws))
     return CaseResult("lock-in", p, quantities, [figure])
 
 
@@ -145,21 +173,25 @@ def _checks(p: dict[str, Any], found: list[Answer]) -> list[Quantity]:
     ]
 
 
-def _values(p: dict[str, Any], still: Answer, found: list[Answer], ways: Array) -> list[Quantity]:
-    """What is told, without a reference."""
+def _values(p: dict[str, Any], f_b: float, breaking: list[float], draws: list[Draw]) -> list[Quantity]:
+    """What is told, without a reference: lists over the ratios, in each draw."""
     k = p["stiffness"]
     return [
-        value("breaking frequency of the cone that stands still", still.breaking, "Hz"),
-        value("its load: deviation, largest", [still.load_deviation, still.load_largest], "N"),
+        value("breaking frequency of the cone that stands still", f_b, "Hz"),
+        value("the same in each draw that has two peaks", breaking, "Hz"),
+        value("its load: deviation, largest", [[d.still.load_deviation, d.still.load_largest] for d in draws], "N"),
         value("ratio f_1 / f_b", p["ratios"], "-"),
-        value("deviation of the displacement", [a.deviation for a in found], "m"),
-        value("its amplification", [a.deviation * k / still.load_deviation for a in found], "-"),
-        value("the same under the load at rest", ways.std(axis=1) * k / still.load_deviation, "-"),
-        value("largest displacement", [a.largest for a in found], "m"),
-        value("its amplification, largest", [a.largest * k / still.load_largest for a in found], "-"),
-        value("the same under the load at rest, largest", ways.max(axis=1) * k / still.load_largest, "-"),
-        value("amplification of the load's deviation", [a.load_deviation / still.load_deviation for a in found], "-"),
-        value("amplification of the largest load", [a.load_largest / still.load_largest for a in found], "-"),
-        value("breaking frequency of the coupled run", [a.breaking for a in found], "Hz"),
-        value("largest speed", [a.speed for a in found], "m/s"),
+        value("deviation of the displacement", told(draws, "deviation"), "m"),
+        value("its amplification", k * ratio_of(draws, "deviation", "load_deviation"), "-"),
+        value("the same under the load at rest", [d.alone[:, 0] * k / d.still.load_deviation for d in draws], "-"),
+        value("largest displacement", told(draws, "largest"), "m"),
+        value("its amplification, largest", k * ratio_of(draws, "largest", "load_largest"), "-"),
+        value(
+            "the same under the load at rest, largest", [d.alone[:, 1] * k / d.still.load_largest for d in draws], "-"
+        ),
+        value("amplification of the load's deviation", ratio_of(draws, "load_deviation"), "-"),
+        value("amplification of the largest load", ratio_of(draws, "load_largest"), "-"),
+        value("amplification of the mean load", ratio_of(draws, "load_mean"), "-"),
+        value("breaking frequency of the coupled run", told(draws, "breaking"), "Hz"),
+        value("largest speed", told(draws, "speed"), "m/s"),
     ]

@@ -2,6 +2,7 @@
 
     python tests/benchmarks/recording_cost.py                 # the campaign case, 40 x 40 nodes, 10 s, three pairs
     python tests/benchmarks/recording_cost.py --pairs 5 --set sheet.nodes=[60,60]
+    python tests/benchmarks/recording_cost.py --case first_cone --seconds 18
 
 The two runs of a pair follow each other, which is first alternates. All in one process after a short run that loads the
 kernels; processor time (`os.times`), which other users of the machine disturb less than the wall's. The asked ratio is
@@ -27,7 +28,7 @@ from cosim.scenario.scenario import Scenario
 from cosim.simulation import run_scenario
 from coupling.interface import Frame
 
-CASE, NODES, SECONDS, ASKED = "basin_2010_floe_165m", "sheet.nodes=[40,40]", 10.0, 0.05
+CASE, NODES, SECONDS, ASKED = "basin_2010_floe_165m", "sheet.nodes=[40,40]", 10.0, 0.05  #: nodes are of this case
 
 
 def processor() -> float:
@@ -72,17 +73,18 @@ def spent(scenario: Scenario, recording: Path | None) -> float:
 def main() -> None:
     """Prints a line for each pair, then the median of the ratios and the size of the recording."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--case", default=CASE)
     parser.add_argument("--pairs", type=int, default=3)
     parser.add_argument("--seconds", type=float, default=SECONDS)
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--profile", action="store_true")
     asked = parser.parse_args()
-    changes = [NODES, *asked.set]
-    scenario = load_scenario(CASE, [*changes, f"scenario.duration='{asked.seconds:g} s'"])
+    changes = [NODES, *asked.set] if asked.case == CASE else asked.set
+    scenario = load_scenario(asked.case, [*changes, f"scenario.duration='{asked.seconds:g} s'"])
     ratios = []
     with tempfile.TemporaryDirectory() as folder:
         recording = Path(folder) / "run.mcap"
-        spent(load_scenario(CASE, [*changes, "scenario.duration='100 ms'"]), recording)
+        spent(load_scenario(asked.case, [*changes, "scenario.duration='100 ms'"]), recording)
         for pair in range(asked.pairs):
             order = (None, recording) if pair % 2 == 0 else (recording, None)
             found = {place is not None: spent(scenario, place) for place in order}

@@ -136,6 +136,26 @@ def test_a_wrong_call_is_an_error_and_no_crash(ice_fmu, rests):
     ice.fmu.freeInstance()
 
 
+def test_a_state_of_another_instance_and_a_step_after_the_end_are_errors(ice_fmu, rests):
+    """Neither ice is moved by it."""
+    from fmpy.fmi1 import FMICallException
+
+    one, other = Held(ice_fmu), Held(ice_fmu)
+    one.step(0.0, 0.05)
+    state = one.fmu.getFMUState()
+    one.step(0.05, 0.05)
+    with pytest.raises(FMICallException, match=r"status 4"):
+        other.fmu.setFMUState(state)
+    assert one.get("fx")[0] == pytest.approx(rests[1, 0], rel=1e-12)
+    other.step(0.0, 0.05)
+    assert other.get("fx")[0] == pytest.approx(rests[0, 0], rel=1e-12)
+    one.fmu.setFMUState(state)
+    assert one.get("fx")[0] == pytest.approx(rests[0, 0], rel=1e-12)
+    one.fmu.terminate()
+    with pytest.raises(FMICallException):
+        one.step(0.05, 0.05)
+
+
 def test_a_run_that_stops_is_an_error_until_a_state_is_set(monkeypatch, tmp_path):
     case = load_scenario(CASE, list(SHEET))
     (tmp_path / "scenario.toml").write_text(case.resolved_toml(), encoding="utf-8")

@@ -1,5 +1,6 @@
 """Plan and section: ice, water, structure, blocks and cracks are where they are, by colour and place."""
 
+import dataclasses
 import io
 
 import numpy as np
@@ -7,12 +8,16 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image, ImageColor
 
-from cosim.recording.reader import read_run, recorded_pictures
+from cosim.recording.reader import read_run, recorded_pictures, recorded_structure
+from cosim.recording.writer import Recorder
+from cosim.scenario.loading import load_scenario
 from cosim.show.ice import plan, section
 from cosim.show.ice.figures import along_waterline, draw_waterline
 from cosim.show.ice.history import Failures, busiest, looks
 from cosim.show.ice.palette import BLOCK, STRUCTURE, WATER
 from cosim.show.ice.scene import scene_of
+from cosim.show.view3d import View
+from cosim.simulation import run_scenario
 from coupling.interface import Phase
 
 
@@ -161,3 +166,62 @@ def test_ice_on_a_slope_that_looks_up_is_not_drawn_as_hidden(run, seen):
         plan.draw_plan(ax, scene_of(replace(run, texts=texts)), seen["most load by sliding"])
         outlined = [c for c in ax.collections if c.get_linestyle()[0][1] is not None and c.get_zorder() < 7]
         assert len(outlined) == hidden, name
+
+
+def test_cracks_do_not_shine_through_what_lies_in_front(run, run_file, pictures):
+    """A sheet that is cracked throughout covers no more of a plate above it than one that is whole."""
+    last = pictures[-1]
+    sheet = dataclasses.replace(last.sheet, damage=np.ones_like(last.sheet.damage))
+    thickness, view = scene_of(run).thickness, View(scene_of(run), recorded_structure(run_file), (450, 450))
+    up = dataclasses.replace(last.blocks, outline=last.blocks.outline + thickness * np.array([-2.0, 1.2]))
+    seen = []
+    try:
+        for whole in (True, False):
+            elastic = np.full(len(sheet.intact), whole)
+            image = view.draw(dataclasses.replace(last, sheet=sheet, blocks=up, elastic=elastic)).astype(int)
+            colours = [np.array(ImageColor.getrgb(BLOCK[phase])) for phase in (Phase.ROTATING, Phase.SLIDING)]
+            dark = image.sum(axis=2) < 160
+            hue = [np.abs(image / image.sum(axis=2, keepdims=True) - c / c.sum()).max(axis=2) < 0.1 for c in colours]
+            seen.append(((hue[0] | hue[1]) & ~dark, dark))
+    finally:
+        view.close()
+    (blocks, _), (still, dark) = seen
+    assert dark.mean() > 0.1  # cracks are seen
+    assert blocks.sum() > 500
+    assert (still & blocks).sum() > 0.98 * blocks.sum()
+
+
+def test_a_structure_that_moves_is_drawn_where_it_is(tmp_path):
+    """A cone on a carriage, 1 m from where it was built: the ice presses where its outline is drawn."""
+    moves = ["drift.velocity='0 m/s'", "water.current=['0 m/s', '0 m/s']", "scenario.duration='2 s'"]
+    moves += ["structure.motion.kind='prescribed'", "structure.motion.velocity=['-0.5 m/s', '0 m/s', '0 m/s']"]
+    path = tmp_path / "moves.mcap"
+    with Recorder(path) as recorder:
+        run_scenario(load_scenario("first_cone", moves), [recorder])
+    run, last = read_run(path), list(recorded_pictures(path))[-1]
+    rests = scene_of(run)
+    there = rests.at(run, last.t_ns)
+    assert there.place == pytest.approx((-1.0, 0, 0, 0, 0, 0))
+    x, y, z = last.forces.position.T
+    assert len(x)
+    for scene, off in ((there, 0.0), (rests, 1.0)):
+        cuts = [scene.cut(float(at)) for at in y]
+        away = [np.hypot(*(cut - (a, c)).T).min() for cut, a, c in zip(cuts, x, z, strict=True)]
+        assert np.median(away) == pytest.approx(0.75 * off, abs=0.3)
+    assert there.waterline().min(axis=0) == pytest.approx(rests.waterline().min(axis=0) - (1.0, 0.0))
+    assert plan.extent(there, last, False)[0] == pytest.approx(plan.extent(rests, last, False)[0] - 1.0)
+    assert section.extent(there, 0.0)[0] == pytest.approx(section.extent(rests, 0.0)[0] - 1.0)
+    view = View(rests, recorded_structure(path), (200, 200))
+    try:
+        images = [view.draw(last, place).astype(int) for place in (rests.place, there.place)]
+    finally:
+        view.close()
+    assert (np.abs(images[0] - images[1]).max(axis=2) > 30).mean() > 0.02
+
+
+def test_a_structure_that_pitches_is_cut_turned(run):
+    """By a right angle about the waterline point: what was below is ahead."""
+    rests = scene_of(run)
+    turned = dataclasses.replace(rests, place=(0.0, 0.0, 0.0, 0.0, 0.5 * np.pi, 0.0))
+    x, z = rests.cut(0.0).T
+    assert turned.cut(0.0) == pytest.approx(np.column_stack((z, -x)))

@@ -181,3 +181,15 @@ def test_foreign_files(tmp_path):
 def test_a_run_that_stops_early_is_a_complete_file(record, tmp_path):
     run = read_run(record(tmp_path / "short.mcap", stop_after=7))
     assert len(run.t_ns) == 7
+
+
+def test_versions_of_libraries_are_those_of_their_metadata():
+    from importlib import metadata
+
+    from cosim import provenance
+
+    found = provenance.libraries()
+    assert {name: found[name] for name in provenance.LIBRARIES} == {
+        n: metadata.version(n) for n in provenance.LIBRARIES
+    }
+    assert provenance.version() == metadata.version("brash-ice")

@@ -13,12 +13,14 @@ from cosim.recording.reader import read_run
 from cosim.scenario.loading import load_scenario
 from cosim.show.figures import ENERGY
 from cosim.show.page.numbers import curve_data, statistics
-from cosim.show.page.parameters import sources
+from cosim.show.page.parameters import sources, told
 from cosim.show.report import content, write_report
 from cosim.simulation import run_scenario
-from coupling.budget import TERMS
+from coupling.budget import NAMED, TERMS
 from coupling.energy import STORES
 from coupling.interface import Event
+
+FLOODED = ("water_above", "water_left_below")  #: loads on the sheet
 
 METADATA = {
     "averaging_s": "0",
@@ -246,3 +248,34 @@ def test_loads_that_press_down_have_quantiles_and_room_as_those_that_lift(run):
         budget_figure._focus(ax, sign * terms, sign * total)
         assert sorted(np.abs(ax.get_ylim())) == pytest.approx([2.0, 4.6])
         assert ax.get_title(loc="right") == ""  # nothing ends outside
+
+
+def test_terms_of_the_budget_are_told_apart_and_those_that_are_zero_are_not_named(run):
+    from matplotlib.figure import Figure
+
+    from cosim.show import budget_figure
+
+    terms = {f"{axis}_{name}": np.zeros(4) for axis in ("fx", "fz") for name in (*TERMS, *FLOODED, "residual")}
+    for name in ("inertia", *FLOODED):
+        terms[f"fz_{name}"] += 1e5
+    figure = Figure()
+    budget_figure.draw(figure, dataclasses.replace(run, budget=terms))
+    handles, names = figure.axes[0].get_legend_handles_labels()
+    assert names == ["inertia", "water above", "water left below", "total"]
+    assert len({tuple(patch.get_facecolor()[0]) for patch in handles[:3]}) == 3
+    assert len(set(budget_figure.colours_of([*TERMS, *NAMED, *FLOODED]))) == len(TERMS) + len(NAMED) + 2
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        ("0.6108652381980153 rad", "35 deg"),
+        (0.3333333333333333, "0.333333"),
+        ("0.5 m", "0.5 m"),
+        ([0.5, 1.5000000000000002], "[0.5, 1.5]"),
+        (True, "true"),
+        ("serial-explicit", "serial-explicit"),
+    ],
+)
+def test_parameters_have_no_false_digits(value, text):
+    assert told(value) == text

@@ -88,9 +88,10 @@ def extent(scene: Scene, picture: Picture, whole: bool) -> tuple[float, float, f
         place = picture.sheet.position[picture.sheet.present]
         low, high = place.min(axis=0), place.max(axis=0)
         return low[0] - radius * 0.1, radius * BEHIND, min(low[1], -radius) * 1.03, max(high[1], radius) * 1.03
+    x, y = scene.place[:2]
     front = float(np.nan_to_num(scene.structure.face_x(0.0, 0.0)))
     ahead, aside = max(AHEAD * radius, LEAST * scene.thickness), min(ASIDE * radius, 0.55 * scene.width)
-    return front - ahead, max(radius * BEHIND, front + 4 * scene.thickness), -aside, aside
+    return x + front - ahead, x + max(radius * BEHIND, front + 4 * scene.thickness), y - aside, y + aside
 
 
 def cracked_cells(picture: Picture) -> tuple[IntArray, Array]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from cosim.build_rubble import sections_of
 from cosim.errors import InputError
 from cosim.scenario.model import ScenarioModel
 from cosim.scenario.scenario import Scenario
-from coupling.interface import Array, Structure
+from coupling.interface import FREEDOMS, Array, Structure
 
 TOWER_RADIUS, TOWER_HEIGHT = 0.35, 1.2  #: of a tower that is drawn and not modelled, per radius at the top
 DEEPEST = 12.0  #: thicknesses of the ice below the water to which a structure is drawn
@@ -28,6 +28,11 @@ class Scene:
     pitch: float  #: width of a section [m]
     thickness: float  #: of the ice [m]
     width: float  #: of the floe [m]
+    place: tuple[float, ...] = (0.0,) * 6  #: of the structure from where it was built: surge to yaw [m, rad]
+
+    def at(self, run: RunData, t_ns: int) -> Scene:
+        """The scene at a time: of a structure that moves, where it is then."""
+        return replace(self, place=place_at(run, t_ns))
 
     @property
     def reach(self) -> float:
@@ -48,23 +53,27 @@ class Scene:
         return max(self.structure.bottom, -DEEPEST * self.thickness)
 
     def cut(self, y: float) -> Array:
-        """Outline (n, 2) of the structure's cut by a section, in x and z; (0, 2) if it misses."""
+        """Outline (n, 2) of the structure's cut by a section, in x and z; (0, 2) if it misses. Without roll and yaw."""
         s = self.structure
-        front, rear = s.section(y, self.bottom(), s.top, 0.01 * self.thickness)
+        front, rear = s.section(y - self.place[1], self.bottom(), s.top, 0.01 * self.thickness)
         if len(front) and not len(rear):  # a slope that does not end
             end = front[:, 0].max() + 10.0 * self.thickness
             rear = np.array([[end, front[0, 1]], [end, front[-1, 1]]])
-        return np.concatenate((front, rear[::-1])) if len(front) else np.empty((0, 2))
+        if not len(front):
+            return np.empty((0, 2))
+        c, d = np.cos(self.place[4]), np.sin(self.place[4])
+        own: Array = np.concatenate((front, rear[::-1]))
+        return np.asarray(own @ np.array([[c, -d], [d, c]]) + np.array([self.place[0], self.place[2]]))
 
     def waterline(self) -> Array:
         """Outline (n, 2) of the structure at the waterline, in x and y; a slope that does not end: its front (2, 2)."""
-        s = self.structure
+        s, shift = self.structure, np.array(self.place[:2])
         if not np.isfinite(s.half_width):
             y = np.array([-0.5, 0.5]) * self.width
-            return np.column_stack((s.face_x(y, np.zeros(2)), y))
+            return np.asarray(np.column_stack((s.face_x(y, np.zeros(2)), y)) + shift)
         y = s.half_width * np.sin(np.linspace(-0.5, 0.5, 121) * np.pi)
         x = np.nan_to_num(s.face_x(y, np.zeros(len(y))))
-        return np.concatenate((np.column_stack((x, y)), np.column_stack((-x, y))[::-1]))
+        return np.asarray(np.concatenate((np.column_stack((x, y)), np.column_stack((-x, y))[::-1])) + shift)
 
     def tower(self) -> tuple[float, float, float] | None:
         """Radius, lower and upper end of the tower that stands on the structure [m]; None on a slope without an end."""
@@ -75,6 +84,14 @@ class Scene:
         if not s.faces_down:  # a cone that narrows upwards carries its tower on its upper end
             radius = float(-s.face_x(0.0, s.top))
         return radius, s.top, s.top + TOWER_HEIGHT * s.half_width
+
+
+def place_at(run: RunData, t_ns: int) -> tuple[float, ...]:
+    """Displacement of the structure in the window that holds a time, surge to yaw [m, rad]; zeros where it rests."""
+    if not run.motion or not len(run.t_ns):
+        return (0.0,) * 6
+    k = min(int(np.searchsorted(run.t_ns, t_ns)), len(run.t_ns) - 1)
+    return tuple(float(run.motion[name][k]) for name in FREEDOMS)
 
 
 def scene_of(run: RunData) -> Scene:

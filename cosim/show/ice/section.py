@@ -52,7 +52,7 @@ def draw_section(ax: Axes, scene: Scene, picture: Picture, y: float, fill: bool 
 def extent(scene: Scene, y: float) -> tuple[float, float, float, float]:
     """What is shown: x and z from, to [m]."""
     h, cut = scene.thickness, scene.cut(y)
-    face = float(np.nan_to_num(scene.structure.face_x(y, 0.0)))
+    face = scene.place[0] + float(np.nan_to_num(scene.structure.face_x(y - scene.place[1], 0.0)))
     depth = min(float(cut[:, 1].min()) if len(cut) else -4.0 * h, -4.0 * h)
     top = max(2.5 * h, min(scene.structure.top, 5.0 * h))
     return face - AHEAD * h, face + BEHIND * h, max(depth, -8.0 * h) - 0.5 * h, top

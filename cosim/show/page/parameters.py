@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator
+from math import degrees
 from typing import Any
 
 from cosim.analysis.run_data import RunData
@@ -14,6 +15,8 @@ DEFAULT, SET = "default of the program", "set by the user of this run"
 _SECTION = re.compile(r"\s*\[([\w.]+)\]\s*(?:#.*)?")
 #: a key, a value in which a hash inside quotes is none, and its comment
 _LINE = re.compile(r"""\s*(\w+)\s*=\s*((?:"[^"]*"|'[^']*'|[^"'#])*)(?:#\s*(.*))?""")
+#: an angle in the unit of the program, and a number with more digits than a reader wants
+_ANGLE, _LONG = re.compile(r"(-?[\d.e+-]+) rad"), re.compile(r"-?\d+\.\d{7,}(?:e[+-]?\d+)?")
 
 
 def parameters(run: RunData) -> list[tuple[str, str, str]]:
@@ -24,8 +27,16 @@ def parameters(run: RunData) -> list[tuple[str, str, str]]:
     rows = []
     for key, value in _leaves(ran):
         source = SET if key in changed else written.get(key, DEFAULT)
-        rows.append((key, value_text(value).strip('"'), source))
+        rows.append((key, told(value), source))
     return rows
+
+
+def told(value: Any) -> str:
+    """A value for a reader: no more than six digits, angles in degrees; the recording holds the exact one."""
+    text = value_text(value).strip('"')
+    if (angle := _ANGLE.fullmatch(text)) is not None:
+        return f"{degrees(float(angle[1])):g} deg"
+    return _LONG.sub(lambda number: f"{float(number[0]):g}", text) if not isinstance(value, int) else text
 
 
 def sources(text: str) -> Iterator[tuple[str, str]]:
