@@ -23,7 +23,7 @@ from rubble.corners import bounds, first_of, go_on_from
 from rubble.gather import Scene
 from rubble.moving import aside, from_axes, own_axes, turned
 from rubble.plates import times
-from rubble.round import Spot, deepest, spot_at, turns_outwards
+from rubble.round import SURELY, Spot, deepest, spot_at, turns_outwards, widest_between
 from rubble.rows import STRUCTURE, Rows, set_arms, set_normal
 from rubble.slots import ROUND_SLOT
 
@@ -85,13 +85,13 @@ def _at(prism: Prism, x: float, y: float, z: float) -> tuple[float, float, float
 
 
 @compiled(nogil=True, borrows=True)
-def _is_far(body: Array, widest: float, prism: Prism) -> bool:
-    """Whether a prism is too far from the axis, or below or above the body, to meet it."""
-    reach = 0.0
+def _is_far(body: Array, prism: Prism) -> bool:
+    """Whether the body is nowhere within the reach of a prism, by the ball around it."""
+    reach, o = 0.0, prism.origin
     for i in range(prism.outline.shape[0]):
         reach = max(reach, np.hypot(prism.outline[i, 0], prism.outline[i, 1]))
-    reach, o = np.hypot(reach, prism.half), prism.origin
-    far: bool = np.hypot(o[0], o[1]) - reach > widest or o[2] - reach > body[-1, 1] or o[2] + reach < body[0, 1]
+    reach = (1.0 + SURELY) * np.hypot(reach, prism.half)
+    far: bool = np.hypot(o[0], o[1]) - reach > widest_between(body, o[2] - reach, o[2] + reach)
     return far
 
 
@@ -202,7 +202,7 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
             continue
         piece, start = slices.piece[s], c
         prism = _prism(scene, piece)
-        if _is_far(scene.body, widest, prism):
+        if _is_far(scene.body, prism):
             continue
         features = 5 * prism.outline.shape[0] + 2 * (scene.body.shape[0] - 2)
         if rows.point.shape[0] < c + features:

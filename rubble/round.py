@@ -13,6 +13,7 @@ import numpy as np
 from rubble.arrays import Array
 from rubble.compiled import compiled
 
+SURELY = 1e-9  #: share of a distance that rounding is kept away from
 DEEPER = 1e-6  #: share of an edge's depth by which a point of it stands deeper than its ends
 
 
@@ -31,6 +32,22 @@ class Spot(NamedTuple):
     depth: float  #: below the surface, negative outside [m]
     n_rho: float  #: normal of the surface, in the meridian plane
     n_z: float
+
+
+@compiled(nogil=True, borrows=True)
+def widest_between(body: Array, low: float, high: float) -> float:
+    """Greatest radius of the body whose closed generator is (k, 2) (r, z) between two heights [m]; -inf beside it."""
+    widest = -np.inf
+    for k in range(body.shape[0] - 1):
+        below, above = body[k, 1], body[k + 1, 1]
+        if above < low or below > high:
+            continue
+        a, b = body[k, 0], body[k + 1, 0]
+        if below < above:
+            slope = (b - a) / (above - below)
+            a, b = a + slope * max(low - below, 0.0), b - slope * max(above - high, 0.0)
+        widest = max(widest, a, b)
+    return widest
 
 
 @compiled(nogil=True, borrows=True)
@@ -72,6 +89,8 @@ def spot_at(body: Array, x: float, y: float, z: float) -> Spot:
 def deepest(body: Array, p: Spot, q: Spot) -> Spot:
     """The point between two corners that stands deepest in the body; one of them if none between stands deeper.
 
+    So it is at once where the edge is farther from the axis than the body is wide there.
+
     Along p + s q the distance n_rho rho + n_z z from a cone has its minimum where n_rho (p . q + s q . q) / rho + n_z
     q_z = 0, scalar products in the plan.
     """
@@ -81,6 +100,10 @@ def deepest(body: Array, p: Spot, q: Spot) -> Spot:
     if a == 0.0:
         return best
     least = np.sqrt(max(p.x * p.x + p.y * p.y - b * b / a, 0.0))  # distance from the axis at which the line passes it
+    beyond = min(max(-b / a, 0.0), 1.0) + b / a  # from there to the nearest point of the edge
+    nearest = (1.0 - SURELY) * np.sqrt(least * least + a * beyond * beyond)
+    if best.depth < 0.0 and nearest > widest_between(body, min(p.z, q.z), max(p.z, q.z)):
+        return best
     for k in range(body.shape[0] - 1):
         er, ez = body[k + 1, 0] - body[k, 0], body[k + 1, 1] - body[k, 1]
         length = np.hypot(er, ez)
