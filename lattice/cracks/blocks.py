@@ -34,6 +34,7 @@ L = LANES
 #: strain from slopes before and now, its forces across the sheet, energy, what else a cell has to say, and its lines
 Y, V, F, OLD, NEW, PULL, GAINED, SAYS, CELL = (LANES * line for line in (0, 20, 40, 60, 63, 66, 68, 69, 70))
 LOOK = CELL + BLOCK  #: length of the room
+GIVEN = 20 * LANES  #: forces of a block on nodes
 
 
 @compiled(nogil=True, borrows=True)
@@ -94,6 +95,30 @@ def add_forces(corner: IntArray, my: int, room: Array, force: Array) -> None:
             force[c, b + my] += room[at + (4 * c + 1) * L]
             force[c, b + 1] += room[at + (4 * c + 2) * L]
             force[c, b + my + 1] += room[at + (4 * c + 3) * L]
+
+
+@compiled(nogil=True, borrows=True)
+def put_forces(block: int, room: Array, given: Array) -> None:
+    """Leaves the forces of a block to `add_given`."""
+    kept = given[block * GIVEN : (block + 1) * GIVEN]
+    for n in range(GIVEN):
+        kept[n] = room[F + n]
+
+
+@compiled(nogil=True, borrows=True)
+def add_given(span: tuple[int, int], corner: IntArray, my: int, given: Array, force: Array) -> None:
+    """As `add_forces` for all cells one after the other, from what blocks have left, on some places alone."""
+    first, end = span
+    for k in range(len(corner)):
+        b, at = corner[k], k // LANES * GIVEN + k % LANES
+        if first <= b < end:
+            for c in range(5):
+                force[c, b] += given[at + (4 * c) * L]
+                force[c, b + 1] += given[at + (4 * c + 2) * L]
+        if first <= b + my < end:
+            for c in range(5):
+                force[c, b + my] += given[at + (4 * c + 1) * L]
+                force[c, b + my + 1] += given[at + (4 * c + 3) * L]
 
 
 @compiled(inline="always")

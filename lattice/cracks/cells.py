@@ -23,6 +23,7 @@ from lattice.cracks.law import Local
 from lattice.cracks.layers import HISTORY, LAYERS, ROW, SLIP, STACK
 from lattice.explicit.layout import LANES, aligned
 from lattice.grid import Array, IntArray
+from lattice.team import TILES
 
 MOVED = 0.02  #: change of a face's strain, as share of e_0, at which the law is evaluated anew
 #: share of the largest strain of a face that is added to e_0 there: in an open crack the place between the layers that
@@ -70,8 +71,8 @@ class Cracks(NamedTuple):
     thrust: Array  #: (m, 2) sum of the compression across n and t [N/m]
     constant: Array  #: (m,) energy by which the tangent's differs from what is stored [J]
     linear: Array  #: (m / LANES * BLOCK,) `MEMBRANE` ... of `LANES` cells, then of the next [N/m], [N], [N m]
-    losses: Array  #: (5,) `CRACKING` ...: sums over all cells [J]
-    stack: Array  #: (STACK,) room for the layers of a cell
+    losses: Array  #: (TILES, LANES) `CRACKING` ...: sums over the cells of each part, see `part_of` [J]
+    stack: Array  #: (TILES, STACK) room for the layers of a cell of each part
 
     @property
     def damage(self) -> Array:
@@ -97,8 +98,8 @@ def room_for(m: int) -> Cracks:
         thrust=zeros((m, 2)),
         constant=zeros(m),
         linear=aligned(-(-m // LANES) * BLOCK),
-        losses=zeros(len(LOSSES)),
-        stack=aligned(STACK),
+        losses=aligned(TILES, LANES),
+        stack=aligned(TILES, STACK),
     )
 
 
@@ -106,6 +107,12 @@ def room_for(m: int) -> Cracks:
 def place(k: int) -> int:
     """Where the values of cell k begin in ``Cracks.linear``; one of its lines lies so much further."""
     return k // LANES * BLOCK + k % LANES
+
+
+@compiled(inline="always")
+def part_of(k: int) -> int:
+    """Which part of the work of a team cell k is: every other block of `LANES`."""
+    return k // LANES % TILES
 
 
 @compiled(inline="always")

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lattice.cracks.begin import face_stresses
+from lattice.cracks.blocks import GIVEN
 from lattice.cracks.cells import HOURGLASS, SWITCHING, Plate
 from lattice.cracks.law import CrackLaw, local_of
 from lattice.cracks.lean import book_pull, gather_lean, lean_energy
@@ -18,12 +19,13 @@ from lattice.explicit import layout
 from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine, SubSteps
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
-from lattice.explicit.layout import Motion
+from lattice.explicit.layout import LANES, Motion
 from lattice.grid import Array, BoolArray, Grid
 from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
 from lattice.strain import CellState
+from lattice.team import ALONE, CREW, Team
 from lattice.varied import PLANE, Varied
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
@@ -50,9 +52,14 @@ class CrackingEngine(ExplicitEngine):
         *,
         law: CrackLaw,
         rigid: float | None = None,
+        threads: int = 1,
         **options: Any,
     ):
-        """As `ExplicitEngine`, with the ``law`` of the cracks; ``rigid`` as in `local_of`, for ice that varies."""
+        """As `ExplicitEngine`, with the ``law`` of the cracks; ``rigid`` as in `local_of`, for ice that varies.
+
+        ``threads`` march together, at most `team.TILES`; bits are the same for any number.
+        """
+        self.threads = threads
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
         varied = options.get("varied") or Varied.uniform(grid.cells)
         E, s, t = (layout.at_places(grid, values) for values in (varied.E, varied.strength, varied.thickness))
@@ -78,7 +85,8 @@ class CrackingEngine(ExplicitEngine):
         lean.stress[:] *= carries
         carries[self.layered.corner] = 1.0
         lean.pull[:] *= carries
-        gather_lean(self.motion.y.shape[2], self.layered.view())
+        my, places = self.motion.y.shape[2], self.motion.y[0].size
+        gather_lean((0, places), my, self.layered.view())
 
     def _at_cells(self, values: NDArray[Any]) -> Array:
         """Values (cells,) at the places of their nodes 0, (places,)."""
@@ -93,18 +101,27 @@ class CrackingEngine(ExplicitEngine):
 
     def book_pull(self, time: float) -> None:
         """Books the work of slopes at the present velocity for a time [s]."""
-        book_pull(time, self.motion.v.reshape(5, -1), self.layered.view())
+        v, layered = self.motion.v.reshape(5, -1), self.layered.view()
+        book_pull(0, (0, v.shape[1]), time, v, layered)
 
     def hold(self) -> float:
         """As `ExplicitEngine.hold`, from layered cells and slopes as well."""
         layered, y = self.layered.view(), self.motion.y
         crack_forces(y.shape[2], y.reshape(5, -1), layered)
-        return super().hold() + float(pull_on_held(self.mesh.held.reshape(-1), layered.nodes.force))
+        return super().hold() + float(pull_on_held((0, y[0].size), self.mesh.held.reshape(-1), layered.nodes.force))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop with the forces of the layered cells."""
-        stretch, layered = Stretch(steps, stride), self.layered.view()
-        made: Made = march_cracked(stretch, self.motion, self.mesh, self.screen, load, touch, sums, layered)
+        layered = self.layered.view()
+
+        def go(team: Team) -> Made:
+            stretch = Stretch(steps, stride, team)
+            made: Made = march_cracked(stretch, self.motion, self.mesh, self.screen, load, touch, sums, layered)
+            return made
+
+        if self.threads == 1:
+            return go(ALONE)
+        made: Made = CREW.run(go, self.threads, (layered.used // LANES + 1) * GIVEN)
         return made
 
     def begin(self, cell: int, angle: float) -> float:
@@ -112,7 +129,8 @@ class CrackingEngine(ExplicitEngine):
         k, nodes = self.layered.add(cell, self._corner(cell), angle), self._nodes()
         layered = self.layered.view()
         stored = float(evaluate_at(k, nodes, layered))
-        layered.cells.losses[SWITCHING] += stored  # what the springs of the cell had is booked by who takes them away
+        # what the springs of the cell had is booked by who takes them away
+        layered.cells.losses[0, SWITCHING] += stored
         return stored + float(hourglass_energy(k, nodes, layered))
 
     def begin_cracked(self, cell: int, angle: float) -> None:
@@ -142,7 +160,7 @@ class CrackingEngine(ExplicitEngine):
         sweep(trial, mesh.intact, mesh.kick, mesh.springs, mesh.pace, mesh.rows)
         for f in forces:
             push(f.row, f.column, f.force, trial, mesh.kick, mesh.pace.go)
-        give(trial, mesh.kick, mesh.pace.go, layered.nodes.force)
+        give((0, self.grid.nx), trial, mesh.kick, mesh.pace.go, layered.nodes.force)
         return trial.v
 
     # ---- what others ask of the layered cells -----------------------------------------------------------------

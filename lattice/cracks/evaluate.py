@@ -25,6 +25,7 @@ from lattice.cracks.cells import (
     edge_energy,
     edge_forces,
     forces,
+    part_of,
     place,
     resultants,
     tangent_energy,
@@ -65,7 +66,7 @@ def tangent_in_sheet(t: Tangent, c: float, s: float) -> Resultants:
 @compiled(inline="always")
 def answer(k: int, e: Strain, h: float, law: CrackLaw, cracks: Cracks) -> Answer:
     """Of the layers of cell k at a strain in the axes of its crack; their states go on."""
-    stack, history = cracks.stack, cracks.history
+    stack, history = cracks.stack[part_of(k)], cracks.history
     for i in range(HISTORY):
         stack[i] = history[k, i]
     follow_all(e, h, law, stack)
@@ -135,7 +136,7 @@ def renew_cell(k: int, here: Pose, way: Pose, plate: Plate, law: CrackLaw, crack
     now = edge_forces(at, long, linear)
     for i in range(4):
         before += 0.5 * (now[i] - was[i]) * way.long[i]
-    lost, rubbing = cracks.losses, area * a.rubbing + rubbing
+    lost, rubbing = cracks.losses[part_of(k)], area * a.rubbing + rubbing
     lost[CRACKING] += area * a.cracking
     lost[CRUSHING] += area * a.crushing
     lost[RUBBING] += rubbing

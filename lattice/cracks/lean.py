@@ -19,7 +19,8 @@ from typing import NamedTuple
 from lattice.compiled import compiled
 from lattice.cracks.cells import TURNING
 from lattice.cracks.kinematics import gradients
-from lattice.cracks.motion import Layered, Nodes, dot, look_at_layered
+from lattice.cracks.motion import Layered, Nodes, dot
+from lattice.explicit.kernels import Span
 from lattice.explicit.layout import LANES, LINE, U_X, U_Y, Motion, W
 from lattice.explicit.screen import Screen, membrane_sums, reached
 from lattice.grid import Array
@@ -108,15 +109,18 @@ def keep_row(start: int, n: int, rows: Array, strain: Array, stress: Array, pull
 
 
 @compiled(nogil=True, borrows=True)
-def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> float:
-    """New slopes of elastic cells, ``intact`` (places,) as `Intact.plane`; the energy gained, over d^2 [J/m2]."""
-    my, lean, rows, gained = nodes.my, layered.lean, layered.nodes.rows, 0.0
+def lean_elastic(part: int, span: Span, nodes: Nodes, intact: Array, layered: Layered) -> float:
+    """New slopes of the elastic cells of some rows, ``intact`` (places,) as `Intact.plane`.
+
+    Returns the energy gained, over d^2 [J/m2].
+    """
+    my, lean, rows, gained = nodes.my, layered.lean, layered.nodes.rows[part], 0.0
     high, n = intact.shape[0] // my, my - LANES
     motion, plane = Motion(nodes.y.reshape(5, high, my), nodes.v.reshape(5, high, my)), intact.reshape(high, my)
     was, q = lean.strain.reshape(3, high, my), 0.5 / layered.plate.d
     constants = Constants(membrane_stiffness(layered), nodes.alpha, nodes.alpha + 0.5 * nodes.dt, q)
     rows[GAIN : GAIN + n] = 0.0
-    for i in range(high - 1):
+    for i in range(span[0], span[1]):
         lean_row(i, motion, plane, was, constants, rows)
         keep_row(i * my, n, rows, lean.strain, lean.stress, lean.pull)
     for j in range(n):
@@ -125,59 +129,48 @@ def lean_elastic(nodes: Nodes, intact: Array, layered: Layered) -> float:
 
 
 @compiled(nogil=True, borrows=True)
-def pulls(x: Array, y: Array, my: int, f: float, out: Array) -> None:
-    """On each node f times what the four cells around it pull with x on d/dx and with y on d/dy.
+def pulls(span: Span, x: Array, y: Array, my: int, f: float, out: Array) -> None:
+    """On the nodes at some places f times what the four cells around each pull with x on d/dx and with y on d/dy.
 
     The last place holds no cell: nodes of the first row look there.
     """
     none = len(out) - 1
-    for n in range(my + 1):
+    for n in range(span[0], min(span[1], my + 1)):
         left, below = n - my if n >= my else none, n - 1 if n > 0 else none
         out[n] = f * ((x[n] - x[left] + x[below] - x[none]) + (y[n] + y[left] - y[below] - y[none]))
-    x_here, x_left, x_below, y_here, y_left, y_below = x[my + 1 :], x[1:], x[my:], y[my + 1 :], y[1:], y[my:]
-    force = out[my + 1 :]
+    a = max(span[0], my + 1)
+    x_here, x_left, x_below, x_far = x[a:], x[a - my :], x[a - 1 :], x[a - my - 1 :]
+    y_here, y_left, y_below, y_far = y[a:], y[a - my :], y[a - 1 :], y[a - my - 1 :]
+    force = out[a : span[1]]
     for n in range(len(force)):
-        along, across = x_here[n] - x_left[n] + x_below[n] - x[n], y_here[n] + y_left[n] - y_below[n] - y[n]
+        along, across = x_here[n] - x_left[n] + x_below[n] - x_far[n], y_here[n] + y_left[n] - y_below[n] - y_far[n]
         force[n] = f * (along + across)
 
 
 @compiled(nogil=True, borrows=True)
-def gather_lean(my: int, layered: Layered) -> None:
-    """Forces of cells that lean on their nodes."""
+def gather_lean(span: Span, my: int, layered: Layered) -> None:
+    """Forces of cells that lean on the nodes at some places."""
     lean, f = layered.lean, 0.5 * layered.plate.d
-    pulls(lean.stress[0], lean.stress[2], my, f, lean.force[U_X])
-    pulls(lean.stress[2], lean.stress[1], my, f, lean.force[U_Y])
-    pulls(lean.pull[0], lean.pull[1], my, f, lean.force[W])
+    pulls(span, lean.stress[0], lean.stress[2], my, f, lean.force[U_X])
+    pulls(span, lean.stress[2], lean.stress[1], my, f, lean.force[U_Y])
+    pulls(span, lean.pull[0], lean.pull[1], my, f, lean.force[W])
 
 
 @compiled(nogil=True, borrows=True)
-def look_at_cells(nodes: Nodes, intact: Array, layered: Layered) -> None:
-    """New slopes of all cells, the law where layered ones have moved, and all that these do to the nodes."""
-    force, lean, gained = layered.nodes.force, layered.lean.force, 0.0
-    force[:] = 0.0
-    if layered.leans:
-        gained += lean_elastic(nodes, intact, layered)
-    gained += look_at_layered(nodes, layered)
-    if layered.leans:
-        gather_lean(nodes.my, layered)
-        for c in range(3):
-            for n in range(lean.shape[1]):
-                force[c, n] += lean[c, n]
-    layered.cells.losses[TURNING] -= layered.plate.d**2 * gained
+def book_pull(part: int, span: Span, time: float, v: Array, layered: Layered) -> None:
+    """Books the work of N . s on the deflection at velocities v (5, places), at some places for a time [s]."""
+    a, b = span
+    layered.cells.losses[part, TURNING] -= time * dot(layered.lean.force[W, a:b], v[W, a:b])
 
 
 @compiled(nogil=True, borrows=True)
-def book_pull(time: float, v: Array, layered: Layered) -> None:
-    """Books the work of N . s on the deflection at velocities v (5, places) for a time [s]."""
-    layered.cells.losses[TURNING] -= time * dot(layered.lean.force[W], v[W])
-
-
-@compiled(nogil=True, borrows=True)
-def overloaded_leaning(motion: Motion, threshold: Array, screen: Screen, alpha: float, layered: Layered) -> int:
-    """As `screen.overloaded`, with the strains of slopes."""
+def overloaded_leaning(
+    span: Span, motion: Motion, threshold: Array, screen: Screen, alpha: float, layered: Layered
+) -> int:
+    """As `screen.overloaded`, with the strains of slopes, in some rows."""
     count, d2 = 0, 2.0 * layered.plate.d
     g = layered.lean.strain.reshape(3, motion.y.shape[1], motion.y.shape[2])
-    for i in range(threshold.shape[0]):
+    for i in range(span[0], span[1]):
         for j in range(threshold.shape[1]):
             e11, e22, e12 = membrane_sums(i, j, motion.y, motion.v, alpha)
             e = e11 + d2 * g[0, i, j], e22 + d2 * g[1, i, j], e12 + d2 * g[2, i, j]

@@ -1,4 +1,7 @@
-"""The loop over the sub-steps of a lattice in which some cells are layered: `explicit.march` with their forces."""
+"""The loop over the sub-steps of a lattice in which some cells are layered: `explicit.march` with their forces.
+
+Threads of a team go through it together, see `lattice.team`: each calls it, and does its part between two meetings.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,15 @@ from typing import NamedTuple
 import numpy as np
 
 from lattice.compiled import compiled
-from lattice.cracks.lean import book_pull, look_at_cells, overloaded_leaning
-from lattice.cracks.motion import Layered, Nodes, damping_power, give, pull_on_held
+from lattice.cracks.motion import Layered, Nodes, damping_power, look_at_layered
 from lattice.cracks.pressing import press, remember_velocity
+from lattice.cracks.slopes import COUNT, HOLD, LOSS
+from lattice.cracks.tiles import add_up, look, move, take_stock, tile_of
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
-from lattice.explicit.kernels import pull_of_springs, push, sweep
 from lattice.explicit.layout import Mesh, Motion
-from lattice.explicit.march import contact_force, dissipated, half_power
+from lattice.explicit.march import contact_force, half_power
 from lattice.explicit.screen import Screen
+from lattice.team import TILES, Team, together
 
 
 class Stretch(NamedTuple):
@@ -22,6 +26,7 @@ class Stretch(NamedTuple):
 
     steps: int
     stride: int  #: damping is taken stock of in each of so many
+    team: Team
 
 
 @compiled(nogil=True)
@@ -35,36 +40,48 @@ def march_cracked(
     sums: Sums,
     layered: Layered,
 ) -> Made:
-    """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves."""
-    pace, contact_work, loss = mesh.pace, 0.0, 0.0
-    hold, my = 0.0, motion.y.shape[2]
-    before, force = mesh.before.reshape(5, -1), layered.nodes.force
+    """As `explicit.march.march`, with the forces of the layered cells, whose law is asked where their strain moves.
+
+    What contact and loads do is summed up by the first thread of the team.
+    """
+    pace, contact_work, team, parts = mesh.pace, 0.0, stretch.team, layered.nodes.parts
+    nx, my, first = mesh.kick.u.shape[0], motion.y.shape[2], team.member == 0
     nodes = Nodes(motion.y.reshape(5, -1), motion.v.reshape(5, -1), my, pace.alpha, pace.go - pace.alpha)
     presses, then = touch.faces.overlap.shape[1] > 0, np.empty((len(touch.row), 5))
+    for k in range(team.member, TILES, team.size):
+        parts[k, HOLD] = parts[k, LOSS] = 0.0
     for step in range(stretch.steps):
+        stock = step % stretch.stride == 0
+        if first:
+            if presses:
+                remember_velocity(touch, sums.now, then, motion.v)
+            else:
+                contact_force(touch, sums.now, motion, pace.alpha)
+            contact_work += half_power(load, touch, sums, motion.v)
+        for k in range(team.member, TILES, team.size):
+            look(tile_of(k, nx, my), stock, nodes, mesh, layered)
+        together(team)
+        look_at_layered(team, nodes, layered)
+        together(team)
+        for k in range(team.member, TILES, team.size):
+            add_up(tile_of(k, nx, my), team, motion, nodes, mesh, layered)
+        together(team)
+        for k in range(team.member, TILES, team.size):
+            move(tile_of(k, nx, my), motion, mesh, load, touch, sums, layered)
+        together(team)
+        if first:
+            if presses:
+                contact_work += press(touch, sums.now, then, motion, mesh.kick, nodes.dt, pace.alpha)
+            sums.contact[:] += sums.now[:, :3]
+            contact_work += half_power(load, touch, sums, motion.v)
         if presses:
-            remember_velocity(touch, sums.now, then, motion.v)
-        else:
-            contact_force(touch, sums.now, motion, pace.alpha)
-        look_at_cells(nodes, mesh.intact.plane.reshape(-1), layered)
-        if step % stretch.stride == 0:
-            mesh.before[:] = motion.v
-        hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
-        hold += pull_on_held(mesh.held.reshape(-1), force)
-        contact_work += half_power(load, touch, sums, motion.v)
-        book_pull(0.5 * nodes.dt, nodes.v, layered)
-        sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
-        push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
-        push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
-        give(motion, mesh.kick, pace.go, force)
-        if presses:
-            contact_work += press(touch, sums.now, then, motion, mesh.kick, pace.go - pace.alpha, pace.alpha)
-        sums.contact[:] += sums.now[:, :3]
-        contact_work += half_power(load, touch, sums, motion.v)
-        book_pull(0.5 * nodes.dt, nodes.v, layered)
-        if step % stretch.stride == 0:
-            loss += dissipated(motion, mesh) + nodes.dt * pace.alpha * damping_power(my, before, nodes.v, layered)
-        count = overloaded_leaning(motion, mesh.threshold, screen, pace.alpha, layered)
+            together(team)
+        if stock:
+            damping_power(team, my, mesh.before.reshape(5, -1), nodes.v, layered)
+        for k in range(team.member, TILES, team.size):
+            take_stock(tile_of(k, nx, my), stock, motion, nodes, mesh, screen, layered)
+        together(team)
+        count = int(parts[0, COUNT] + parts[1, COUNT])
         if count > 0:
-            return Made(step + 1, count, contact_work, loss, hold)
-    return Made(stretch.steps, 0, contact_work, loss, hold)
+            return Made(step + 1, count, contact_work, parts[0, LOSS] + parts[1, LOSS], parts[0, HOLD] + parts[1, HOLD])
+    return Made(stretch.steps, 0, contact_work, parts[0, LOSS] + parts[1, LOSS], parts[0, HOLD] + parts[1, HOLD])

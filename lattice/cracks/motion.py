@@ -21,6 +21,7 @@ from lattice.cracks.blocks import (
     moved,
     pose_in,
     power_block,
+    put_forces,
     put_lean,
 )
 from lattice.cracks.cells import (
@@ -32,6 +33,7 @@ from lattice.cracks.cells import (
     Cracks,
     Plate,
     edge_energy,
+    part_of,
     place,
     plate_at,
     tangent_energy,
@@ -39,9 +41,11 @@ from lattice.cracks.cells import (
 from lattice.cracks.evaluate import renew_cell, write
 from lattice.cracks.kinematics import Pose, Strain, elongations, leaned, plus, pose_of, strain_of
 from lattice.cracks.law import CrackLaw, Local, law_at
-from lattice.cracks.slopes import Lean, OnNodes
+from lattice.cracks.slopes import GAINED, POWER, Lean, OnNodes
+from lattice.explicit.kernels import Span
 from lattice.explicit.layout import LANES, U_X, Motion, PerNode, W
 from lattice.grid import Array
+from lattice.team import Team
 
 
 class Layered(NamedTuple):
@@ -94,9 +98,9 @@ def evaluate_at(k: int, nodes: Nodes, layered: Layered) -> float:
 
 
 @compiled(nogil=True, borrows=True, error_model="numpy")
-def ask_moved(first: int, end: int, times: tuple[float, float], layered: Layered) -> None:
+def ask_moved(first: int, end: int, times: tuple[float, float], room: Array, layered: Layered) -> None:
     """Evaluates the law in those cells of a block that `moved` has found."""
-    room, d = layered.nodes.room, layered.plate.d
+    d = layered.plate.d
     for k in range(first, end):
         lane = k - first
         if room[SAYS + lane] > 0.0:
@@ -105,15 +109,17 @@ def ask_moved(first: int, end: int, times: tuple[float, float], layered: Layered
 
 
 @compiled(nogil=True, borrows=True)
-def look_at_layered(nodes: Nodes, layered: Layered) -> float:
-    """New slopes of layered cells, their law where their strain has moved, and their forces, added on the nodes.
+def look_at_layered(team: Team, nodes: Nodes, layered: Layered) -> None:
+    """New slopes of layered cells, their law where their strain has moved, and their forces.
 
-    Returns the energy that the slopes have given, over d^2 [J/m2].
+    One thread adds these on the nodes, several leave them to `add_given`. The energy that slopes have given, over d^2,
+    is added to ``parts`` [J/m2].
     """
-    cracks, room, d, my = layered.cells, layered.nodes.room, layered.plate.d, nodes.my
-    q, ago, gained, lean = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, 0.0, layered.lean
-    for first in range(0, layered.used, LANES):
-        end = min(first + LANES, layered.used)
+    cracks, d, my = layered.cells, layered.plate.d, nodes.my
+    q, ago, lean = 0.5 / d, nodes.alpha + 0.5 * nodes.dt, layered.lean
+    for first in range(team.member * LANES, layered.used, team.size * LANES):
+        end, part = min(first + LANES, layered.used), part_of(first)
+        room = layered.nodes.room[part]
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, room)
         fetch(Y, corner, my, nodes.y, room)
@@ -121,36 +127,42 @@ def look_at_layered(nodes: Nodes, layered: Layered) -> float:
         fetch(V, corner, my, nodes.v, room)
         if layered.leans:
             lean_block(q, nodes.alpha, ago, room)
-            gained += put_lean(corner, room, lean.strain, lean.pull)
+            layered.nodes.parts[part, GAINED] += put_lean(corner, room, lean.strain, lean.pull)
         if moved(q, room) > 0:
-            ask_moved(first, end, (nodes.alpha, nodes.dt), layered)
+            ask_moved(first, end, (nodes.alpha, nodes.dt), room, layered)
         force_block(d, room)
-        add_forces(corner, my, room, layered.nodes.force)
-    return gained
+        if team.size == 1:
+            add_forces(corner, my, room, layered.nodes.force)
+        else:
+            put_forces(first // LANES, room, team.given)
 
 
 @compiled(nogil=True)
 def crack_forces(my: int, y: Array, layered: Layered) -> None:
     """Forces of the layered cells and of slopes on the nodes at the effective displacements y (5, nodes)."""
-    cracks, on = layered.cells, layered.nodes
+    cracks, on, room = layered.cells, layered.nodes, layered.nodes.room[0]
     on.force[:] = 0.0
     on.force[: W + 1] = layered.lean.force
     for first in range(0, layered.used, LANES):
         end = min(first + LANES, layered.used)
         corner = cracks.corner[first:end]
-        fetch_cells(first, cracks.linear, on.room)
-        fetch(Y, corner, my, y, on.room)
-        fetch_lean(corner, layered.lean.strain, on.room)
-        force_block(layered.plate.d, on.room)
-        add_forces(corner, my, on.room, on.force)
+        fetch_cells(first, cracks.linear, room)
+        fetch(Y, corner, my, y, room)
+        fetch_lean(corner, layered.lean.strain, room)
+        force_block(layered.plate.d, room)
+        add_forces(corner, my, room, on.force)
 
 
 @compiled(nogil=True, borrows=True)
-def damping_power(my: int, v: Array, z: Array, layered: Layered) -> float:
-    """Sum of v . K (v + z) / 2 over layered cells with their tangents K, for two motions of the nodes (5, nodes)."""
-    cracks, room, power = layered.cells, layered.nodes.room, 0.0
-    for first in range(0, layered.used, LANES):
-        end = min(first + LANES, layered.used)
+def damping_power(team: Team, my: int, v: Array, z: Array, layered: Layered) -> None:
+    """Sum of v . K (v + z) / 2 over layered cells with their tangents K, for two motions of the nodes (5, nodes).
+
+    It is added to ``parts``.
+    """
+    cracks, parts = layered.cells, layered.nodes.parts
+    for first in range(team.member * LANES, layered.used, team.size * LANES):
+        end, part = min(first + LANES, layered.used), part_of(first)
+        room = layered.nodes.room[part]
         corner = cracks.corner[first:end]
         fetch_cells(first, cracks.linear, room)
         fetch(Y, corner, my, z, room)
@@ -158,8 +170,7 @@ def damping_power(my: int, v: Array, z: Array, layered: Layered) -> float:
         halve(room)
         power_block(layered.plate.d, room)
         for lane in range(end - first):
-            power += room[SAYS + lane]
-    return power
+            parts[part, POWER] += room[SAYS + lane]
 
 
 @compiled(nogil=True, borrows=True, fastmath={"reassoc"})
@@ -172,13 +183,13 @@ def dot(x: Array, y: Array) -> float:
 
 
 @compiled(nogil=True, borrows=True)
-def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
-    """Adds forces (5, places) on all nodes to a sub-step that has been made."""
+def give(span: Span, motion: Motion, kick: PerNode, go: float, force: Array) -> None:
+    """Adds forces (5, places) on the nodes of some rows to a sub-step that has been made."""
     y, v, f = motion.y, motion.v, force.reshape(motion.y.shape)
-    nx, ny = kick.u.shape
+    ny = kick.u.shape[1]
     for c in range(5):
         mobility = kick.u if c < W else kick.w if c == W else kick.phi
-        for i in range(nx):
+        for i in range(span[0], span[1]):
             for j in range(ny):
                 dv = mobility[i, j] * f[c, i, j]
                 v[c, i, j] += dv
@@ -186,9 +197,9 @@ def give(motion: Motion, kick: PerNode, go: float, force: Array) -> None:
 
 
 @compiled(nogil=True, borrows=True)
-def pull_on_held(held: Array, force: Array) -> float:
-    """Force along x that nodes with ``held`` (places,) 1 need against the forces (5, places) [N]."""
-    total: float = dot(held, force[U_X])
+def pull_on_held(span: Span, held: Array, force: Array) -> float:
+    """Force along x that nodes with ``held`` (places,) 1 need against the forces (5, places) on some places [N]."""
+    total: float = dot(held[span[0] : span[1]], force[U_X, span[0] : span[1]])
     return -total
 
 

@@ -5,8 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from lattice.cracks.blocks import LOOK
-from lattice.explicit.layout import LINE, aligned
+from lattice.explicit.layout import LANES, LINE, LINES, aligned
 from lattice.grid import Array
+from lattice.team import TILES
+
+#: entries of ``OnNodes.parts``: energy that slopes give over d^2 [J/m2], power of damping [W], faces at their limit,
+#: force that held nodes take [N], work of damping [J]
+GAINED, POWER, COUNT, HOLD, LOSS = range(5)
 
 
 class Lean(NamedTuple):
@@ -22,8 +27,10 @@ class OnNodes(NamedTuple):
     """What the loops leave for each other within a sub-step."""
 
     force: Array  #: (5, places) of layered cells and slopes on the nodes [N], [N m]
-    room: Array  #: (LOOK,) of a block of layered cells, see `lattice.cracks.blocks`
-    rows: Array  #: (9 LINE,) of a row of cells, see `lattice.cracks.lean`
+    room: Array  #: (TILES, LOOK) of a block of layered cells, see `lattice.cracks.blocks`
+    rows: Array  #: (TILES, 9 LINE) of a row of cells, see `lattice.cracks.lean`
+    lines: Array  #: (TILES + 1, LINES LINE) as `Mesh.rows` of each part, and of the row between both
+    parts: Array  #: (TILES, LANES) `GAINED` ...: what each part has summed up
 
 
 def level(places: int) -> Lean:
@@ -34,4 +41,5 @@ def level(places: int) -> Lean:
 
 def on_nodes(places: int) -> OnNodes:
     """No force."""
-    return OnNodes(aligned(5, places), aligned(LOOK), aligned(9 * LINE))
+    rooms = aligned(TILES, LOOK), aligned(TILES, 9 * LINE), aligned(TILES + 1, LINES * LINE)
+    return OnNodes(aligned(5, places), *rooms, aligned(TILES, LANES))

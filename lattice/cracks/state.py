@@ -122,4 +122,4 @@ class LayeredCells:
     @property
     def losses(self) -> dict[str, float]:
         """What cracking, crushing, rubbing and the switching of tangents have taken [J]."""
-        return dict(zip(LOSSES, self._cracks.losses.tolist(), strict=True))
+        return dict(zip(LOSSES, self._cracks.losses.sum(axis=0).tolist(), strict=False))

@@ -242,9 +242,9 @@ class ExplicitEngine(Engine):
 
     def hold(self) -> float:
         """Force along x that held nodes take from all cells now [N]."""
-        return float(pull_of_springs(self.motion, self.mesh.intact, self.mesh.held, self.mesh.springs))
+        every, mesh = (0, self.grid.nx), self.mesh
+        return float(pull_of_springs(every, self.motion, mesh.intact, mesh.held, mesh.springs))
 
     def loop(self, steps: int, stride: int, load: PointForces, touch: Touch, sums: Sums) -> Made:
         """The compiled loop. A lattice whose cells carry more than springs runs its own here."""
-        made: Made = march(steps, stride, self.motion, self.mesh, self.screen, load, touch, sums)
-        return made
+        return Made(*march(steps, stride, self.motion, self.mesh, self.screen, load, touch, sums))

@@ -35,6 +35,7 @@ from lattice.grid import Array, IntArray
 
 NX, SX, QX, BX, TX, NY, SY, QY, BY, TY, D1, D2, G1, G2, C0, C1, C2, C3, C4 = (k * LINE + LANES for k in range(LINES))
 CARRIED = 14 * LINE  #: where the sums begin in ``rows`` that a row leaves for the next one
+Span = tuple[int, int]  #: rows from the first to before the last
 Five = tuple[float, float, float, float, float]  #: a value of each degree of freedom, or of each spring along an axis
 
 
@@ -100,13 +101,13 @@ def connections(i: int, ny: int, y: Array, intact: Intact, springs: HalfSprings,
 
 
 @compiled(nogil=True, borrows=True)
-def power_of_springs(one: Array, two: Array, intact: Intact, springs: HalfSprings, rows: Array, ny: int) -> float:
-    """Sum of one . K (one + two) / 2 over the springs, for two motions of the nodes."""
+def power_of_springs(span: Span, one: Array, two: Array, intact: Intact, springs: HalfSprings, rows: Array) -> float:
+    """Sum of one . K (one + two) / 2 over the springs of some rows, for two motions of the nodes."""
     kn, ks, ko, gr, gt = springs.K_n, springs.K_s, springs.K_out, springs.G_r, springs.G_t
     kd, gd, half, total = springs.K_n_dia, springs.G_dia, springs.lever, 0.0
-    nx = intact.plane.shape[0] - 1
+    ny = intact.plane.shape[1] - LANES
     rows[NX : NX + ny] = 0.0
-    for i in range(nx):
+    for i in range(span[0], span[1]):
         for j in range(ny):
             (x, bx), (z, bz), (cell, bent) = weights(i, j, intact)
             n0, n1, n2 = at_node(i, j, one), at_node(i + 1, j, one), at_node(i, j + 1, one)
@@ -163,11 +164,22 @@ def gather(i: int, ny: int, motion: Motion, kick: PerNode, lever: float, pace: P
 
 
 @compiled(nogil=True, borrows=True)
-def pull_of_springs(motion: Motion, intact: Intact, held: Array, springs: HalfSprings) -> float:
-    """Force along x that nodes with ``held`` (n_x+1, m_y) 1 need against the springs [N]; else it is 0."""
+def carry_on(ny: int, half: float, rows: Array) -> None:
+    """What `gather` of a row leaves for the next one, from its connections alone."""
+    for j in range(ny):
+        rows[C0 + j] = -rows[NX + j] - rows[D1 + j - 1] - rows[D2 + j]
+        rows[C1 + j] = -rows[SX + j] - rows[D1 + j - 1] + rows[D2 + j]
+        rows[C2 + j] = -rows[QX + j]
+        rows[C3 + j] = -rows[BX + j] - rows[G1 + j - 1] - rows[G2 + j] - half * rows[QX + j]
+        rows[C4 + j] = -rows[TX + j] - rows[G1 + j - 1] + rows[G2 + j]
+
+
+@compiled(nogil=True, borrows=True)
+def pull_of_springs(span: Span, motion: Motion, intact: Intact, held: Array, springs: HalfSprings) -> float:
+    """Force along x that nodes with ``held`` (n_x+1, m_y) 1, else 0, need against the springs of some rows [N]."""
     y, kn, ks, kd, total = motion.y, springs.K_n, springs.K_s, springs.K_n_dia, 0.0
     plane = intact.plane
-    for i in range(held.shape[0] - 1):
+    for i in range(span[0], span[1]):
         row = 0.0
         for j in range(held.shape[1] - 1):
             a, b, c, e = held[i, j], held[i + 1, j], held[i, j + 1], held[i + 1, j + 1]
@@ -193,15 +205,25 @@ def sweep(motion: Motion, intact: Intact, kick: PerNode, springs: HalfSprings, p
 
 
 @compiled(nogil=True, borrows=True)
-def push(row: IntArray, column: IntArray, force: Array, motion: Motion, kick: PerNode, go: float) -> None:
-    """Adds forces (k, 5) on single nodes to the step that `sweep` has just made; go = dt + alpha."""
+def push_within(
+    span: Span, row: IntArray, column: IntArray, force: Array, motion: Motion, kick: PerNode, go: float
+) -> None:
+    """As `push`, on the nodes of some rows alone."""
     for k in range(len(row)):
         i, j = row[k], column[k]
+        if i < span[0] or i >= span[1]:
+            continue
         for c in range(5):
             share = kick.u[i, j] if c < W else kick.w[i, j] if c == W else kick.phi[i, j]
             dv = share * force[k, c]
             motion.v[c, i, j] += dv
             motion.y[c, i, j] += go * dv
+
+
+@compiled(nogil=True, borrows=True)
+def push(row: IntArray, column: IntArray, force: Array, motion: Motion, kick: PerNode, go: float) -> None:
+    """Adds forces (k, 5) on single nodes to the step that `sweep` has just made; go = dt + alpha."""
+    push_within((0, kick.u.shape[0]), row, column, force, motion, kick, go)
 
 
 @compiled(nogil=True)

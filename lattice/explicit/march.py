@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from lattice.compiled import compiled
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
-from lattice.explicit.kernels import power_of_springs, pull_of_springs, push, sweep
+from lattice.explicit.kernels import Span, power_of_springs, pull_of_springs, push, sweep
 from lattice.explicit.layout import PHI_X, Mesh, Motion, W
 from lattice.explicit.screen import Screen, overloaded
 from lattice.grid import Array, IntArray
@@ -36,20 +36,20 @@ def contact_force(touch: Touch, now: Array, motion: Motion, alpha: float) -> Non
 
 
 @compiled(nogil=True, borrows=True)
-def dissipated(motion: Motion, mesh: Mesh) -> float:
-    """Work that damping of springs and water took in a sub-step [J], exact for leapfrog.
+def dissipated(span: Span, motion: Motion, mesh: Mesh, rows: Array) -> float:
+    """Work that damping of springs and water took in a sub-step in some rows [J], exact for leapfrog.
 
     It acts on the velocities ``before`` and takes its force times the mean velocity.
     """
     mass, pace, before, v = mesh.mass, mesh.pace, mesh.before, motion.v
-    nx, ny = mass.shape
+    ny = mass.shape[1]
     drag, taken = pace.drag + pace.alpha * pace.buoy, 0.0  # dt c / (rho h)
-    for i in range(nx):
+    for i in range(span[0], span[1]):
         row = 0.0
         for j in range(ny):
             row += mass[i, j] * before[W, i, j] * (0.5 * (before[W, i, j] + v[W, i, j]))
         taken += row
-    springs: float = power_of_springs(before, v, mesh.intact, mesh.springs, mesh.rows, ny)
+    springs: float = power_of_springs(span, before, v, mesh.intact, mesh.springs, rows)
     return drag * taken + (pace.go - pace.alpha) * pace.alpha * springs
 
 
@@ -82,19 +82,20 @@ def march(
     every ``stride``-th sub-step, which costs as much as a sub-step.
     """
     pace, contact_work, loss, hold = mesh.pace, 0.0, 0.0, 0.0
+    every = (0, mesh.kick.u.shape[0])
     for step in range(steps):
         contact_force(touch, sums.now, motion, pace.alpha)
         sums.contact[:] += sums.now[:, :3]
         if step % stride == 0:
             mesh.before[:] = motion.v
         contact_work += half_power(load, touch, sums, motion.v)
-        hold += pull_of_springs(motion, mesh.intact, mesh.held, mesh.springs)
+        hold += pull_of_springs(every, motion, mesh.intact, mesh.held, mesh.springs)
         sweep(motion, mesh.intact, mesh.kick, mesh.springs, pace, mesh.rows)
         push(load.row, load.column, load.force, motion, mesh.kick, pace.go)
         push(touch.row, touch.column, sums.now, motion, mesh.kick, pace.go)
         contact_work += half_power(load, touch, sums, motion.v)
         if step % stride == 0:
-            loss += dissipated(motion, mesh)
+            loss += dissipated(every, motion, mesh, mesh.rows)
         count = overloaded(motion, mesh.threshold, screen, pace.alpha)
         if count > 0:
             return Made(step + 1, count, contact_work, loss, hold)
