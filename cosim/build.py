@@ -196,7 +196,8 @@ def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
     if scenario.fracture.cracks == "closing":
         measured = build_measured(scenario)
         try:
-            return cracking_sheet(grid, ice, springs, window, measured, dynamic=dynamic, criteria=criteria, **options)
+            options |= {"dynamic": dynamic, "criteria": criteria, "threads": s.threads}
+            return cracking_sheet(grid, ice, springs, window, measured, **options)
         except ValueError as error:
             raise InputError(f"{scenario.name}: {error}") from error
     if dynamic:

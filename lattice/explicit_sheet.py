@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from lattice.contact import EdgeContact, edge_displacement, lever_of
-from lattice.criteria.judge import Standing
+from lattice.criteria.judge import EVERY, Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.explicit.booking import BookedFloe
 from lattice.explicit.easing import Easing
@@ -191,13 +191,17 @@ class ExplicitSheet(BookedFloe):
         Of neighbours only the first: what it does to the others shows in the next sub-step. Two equal cells beside
         the axis of a symmetric floe would otherwise open two cracks with a row of loose nodes in between.
         """
-        now, before = (self._utilisation(self._at(ago)) for ago in (0.0, 1.0))
+        now = self._utilisation(self._at(0.0))
         cells = np.flatnonzero(now >= 1.0)
-        rise = np.maximum(now[cells] - before[cells], 1e-300)
-        part = np.clip((1.0 - before[cells]) / rise, 0.0, 1.0)
+        part = self._reached(cells, now[cells])
         order = np.lexsort((-now[cells], part))
         order = order[_apart(cells[order], self.grid.ny - 1)]
         return cells[order], part[order]
+
+    def _reached(self, cells: IntArray, now: Array) -> Array:
+        """Part of the last sub-step at which cells came to their limit, of which the utilisation is known ``now``."""
+        before = self._utilisation(self._at(1.0), cells)
+        return np.clip((1.0 - before) / np.maximum(now - before, 1e-300), 0.0, 1.0)
 
     def _ease(self) -> None:
         """Keeps cells that have come to lie beside a crack tip from failing under what they carried before."""
@@ -211,8 +215,8 @@ class ExplicitSheet(BookedFloe):
     def _eased(self) -> Standing:
         return replace(self.standing, limit=self._easing.limits(self.standing.limit))
 
-    def _utilisation(self, state: State) -> Array:
-        return self.judge.utilisation(state.u, state.q, self._eased())
+    def _utilisation(self, state: State, cells: IntArray | slice = EVERY) -> Array:
+        return self.judge.utilisation(state.u, state.q, self._eased(), cells)
 
     def _at(self, ago: float) -> State:
         u, q = self.engine.displacement(ago)

@@ -14,7 +14,7 @@ import numpy as np
 
 from lattice.contact import EdgeContact, NoContact
 from lattice.cracks.hinges import Hinges, no_hinges
-from lattice.criteria.judge import Judge, Standing
+from lattice.criteria.judge import EVERY, Judge, Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.energy import EnergyBooks
 from lattice.fragments import front_rows, loose_pieces
@@ -211,8 +211,8 @@ class Floe(ABC):
         """Row of the foremost node of each column, -1 where there is none."""
         return front_rows(self.grid, self.present)
 
-    def _utilisation(self, state: State) -> Array:
-        return self.judge.utilisation(state.u, state.q, self.standing)
+    def _utilisation(self, state: State, cells: IntArray | slice = EVERY) -> Array:
+        return self.judge.utilisation(state.u, state.q, self.standing, cells)
 
     # ---- failure ----------------------------------------------------------------------------------------------
 

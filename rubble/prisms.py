@@ -23,7 +23,7 @@ from rubble.corners import bounds, first_of, go_on_from
 from rubble.gather import Scene
 from rubble.moving import aside, from_axes, own_axes, turned
 from rubble.plates import times
-from rubble.round import SURELY, Spot, deepest, spot_at, turns_outwards, widest_between
+from rubble.round import SURELY, Spot, deepest, is_beside, spot_at, turns_outwards, widest_between
 from rubble.rows import STRUCTURE, Rows, set_arms, set_normal
 from rubble.slots import ROUND_SLOT
 
@@ -85,12 +85,12 @@ def _at(prism: Prism, x: float, y: float, z: float) -> tuple[float, float, float
 
 
 @compiled(nogil=True, borrows=True)
-def _is_far(body: Array, prism: Prism) -> bool:
-    """Whether the body is nowhere within the reach of a prism, by the ball around it."""
-    reach, o = 0.0, prism.origin
-    for i in range(prism.outline.shape[0]):
-        reach = max(reach, np.hypot(prism.outline[i, 0], prism.outline[i, 1]))
-    reach = (1.0 + SURELY) * np.hypot(reach, prism.half)
+def _is_far(body: Array, o: tuple[float, float, float], outline: Array, half: float) -> bool:
+    """Whether the body is nowhere within the reach of the prism about o, by the ball around it."""
+    reach = 0.0
+    for i in range(outline.shape[0]):
+        reach = max(reach, outline[i, 0] * outline[i, 0] + outline[i, 1] * outline[i, 1])
+    reach = (1.0 + SURELY) * np.sqrt(reach + half * half)
     far: bool = np.hypot(o[0], o[1]) - reach > widest_between(body, o[2] - reach, o[2] + reach)
     return far
 
@@ -169,6 +169,19 @@ def _ends(edge: int, n: int) -> tuple[int, int]:
 
 
 @compiled(nogil=True)
+def _may_touch(body: Array, spots: list[Spot], feature: int) -> bool:
+    """Whether a feature of a prism with these corners comes near the body at all; features as in `_touch`."""
+    n = len(spots) // 2
+    if feature >= 5 * n:
+        return bool(turns_outwards(body, 1 + (feature - 5 * n) // 2))
+    if feature < 2 * n:
+        return spots[feature].depth >= 0.0
+    i, j = _ends(feature - 2 * n, n)
+    p, q = spots[i], spots[j]
+    return p.depth >= 0.0 or q.depth >= 0.0 or not is_beside(body, p, q)
+
+
+@compiled(nogil=True)
 def _touch(scene: Scene, widest: float, rows: Rows, c: int, prism: Prism, spots: list[Spot], feature: int) -> bool:
     """Row c from a feature of a prism: 2n corners, 3n edges, and two places of each rim. Whether it touches."""
     n = len(spots) // 2
@@ -201,14 +214,18 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
         if slices.piece[s] == piece:
             continue
         piece, start = slices.piece[s], c
-        prism = _prism(scene, piece)
-        if _is_far(scene.body, prism):
+        outline, k = pieces.corners[pieces.offset[piece] : pieces.offset[piece + 1]], pieces.plate[piece]
+        origin = _own(scene, k, 0.0, pieces.y[piece], 0.0)
+        if _is_far(scene.body, origin, outline, 0.5 * pieces.width[piece]):
             continue
+        prism = _prism(scene, piece)
         features = 5 * prism.outline.shape[0] + 2 * (scene.body.shape[0] - 2)
         if rows.point.shape[0] < c + features:
             return -1
         spots = _corners(scene.body, prism)
         for feature in range(features):
+            if not _may_touch(scene.body, spots, feature):
+                continue
             if not _touch(scene, widest, rows, c, prism, spots, feature):
                 continue
             point = rows.point[c]

@@ -86,10 +86,19 @@ def spot_at(body: Array, x: float, y: float, z: float) -> Spot:
 
 
 @compiled(nogil=True, borrows=True)
+def is_beside(body: Array, p: Spot, q: Spot) -> bool:
+    """Whether the edge between two corners is farther from the axis than the body is wide where it is."""
+    dx, dy = q.x - p.x, q.y - p.y
+    a, b = dx * dx + dy * dy, p.x * dx + p.y * dy
+    s = min(max(-b / a, 0.0), 1.0) if a > 0.0 else 0.0
+    nearest = np.hypot(p.x + s * dx, p.y + s * dy)
+    beside: bool = (1.0 - SURELY) * nearest > widest_between(body, min(p.z, q.z), max(p.z, q.z))
+    return beside
+
+
+@compiled(nogil=True, borrows=True)
 def deepest(body: Array, p: Spot, q: Spot) -> Spot:
     """The point between two corners that stands deepest in the body; one of them if none between stands deeper.
-
-    So it is at once where the edge is farther from the axis than the body is wide there.
 
     Along p + s q the distance n_rho rho + n_z z from a cone has its minimum where n_rho (p . q + s q . q) / rho + n_z
     q_z = 0, scalar products in the plan.
@@ -100,10 +109,6 @@ def deepest(body: Array, p: Spot, q: Spot) -> Spot:
     if a == 0.0:
         return best
     least = np.sqrt(max(p.x * p.x + p.y * p.y - b * b / a, 0.0))  # distance from the axis at which the line passes it
-    beyond = min(max(-b / a, 0.0), 1.0) + b / a  # from there to the nearest point of the edge
-    nearest = (1.0 - SURELY) * np.sqrt(least * least + a * beyond * beyond)
-    if best.depth < 0.0 and nearest > widest_between(body, min(p.z, q.z), max(p.z, q.z)):
-        return best
     for k in range(body.shape[0] - 1):
         er, ez = body[k + 1, 0] - body[k, 0], body[k + 1, 1] - body[k, 1]
         length = np.hypot(er, ez)

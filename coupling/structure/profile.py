@@ -39,6 +39,11 @@ class Profile:
         """Radii of the points (n,) [m]."""
         return np.array([p[1] for p in self.points])
 
+    @cached_property
+    def slopes(self) -> Array:
+        """dr/dz of the pieces between the points (n - 1,)."""
+        return np.asarray(np.diff(self.r) / np.diff(self.z))
+
     @property
     def bottom(self) -> float:
         """Lowest point [m]."""
@@ -56,7 +61,7 @@ class Profile:
     def slope(self, z: Array) -> Array:
         """dr/dz; at a corner that of the piece above, beyond the ends that of the end."""
         piece = np.clip(np.searchsorted(self.z, z, side="right") - 1, 0, len(self.z) - 2)
-        return np.asarray((np.diff(self.r) / np.diff(self.z))[piece])
+        return np.asarray(self.slopes[piece])
 
     def pieces(self, z_lo: float, z_hi: float) -> Iterator[tuple[float, float, float, float, float]]:
         """Straight pieces between two heights: start (z0, r0) and slope of each, heights a < b that are inside."""

@@ -20,13 +20,13 @@ from lattice.explicit.engine import TRUE_INERTIA, ExplicitEngine, SubSteps
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import push, sweep
 from lattice.explicit.layout import LANES, Motion
-from lattice.grid import Array, BoolArray, Grid
+from lattice.grid import Array, BoolArray, Grid, IntArray
 from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
 from lattice.strain import CellState
-from lattice.team import ALONE, CREW, Team
-from lattice.varied import PLANE, Varied
+from lattice.team import ALONE, CREW, TILES, Team
+from lattice.varied import Varied
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
 #: waves still die out within some ten periods, and the peak of the 165 m floe moves by 0.2 % (1e-4 against 1e-3 s) [-]
@@ -59,6 +59,8 @@ class CrackingEngine(ExplicitEngine):
 
         ``threads`` march together, at most `team.TILES`; bits are the same for any number.
         """
+        if not 1 <= threads <= TILES:
+            raise ValueError(f"a sheet on {threads} threads; give 1 to {TILES}")
         self.threads = threads
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
         varied = options.get("varied") or Varied.uniform(grid.cells)
@@ -87,6 +89,15 @@ class CrackingEngine(ExplicitEngine):
         lean.pull[:] *= carries
         my, places = self.motion.y.shape[2], self.motion.y[0].size
         gather_lean((0, places), my, self.layered.view())
+
+    def lose_springs(self, cells: IntArray) -> None:
+        """As `set_cells` with these no longer live, and all else as it was."""
+        (i, j), my, lean = np.divmod(cells, self.grid.ny - 1), self.motion.y.shape[2], self.layered.lean
+        for share in self.mesh.intact:
+            share[i + 1, j + 1] = 0.0
+        self.mesh.threshold[i, j] = np.inf
+        lean.stress[:, i * my + j] *= 0.0
+        gather_lean((0, lean.stress.shape[1]), my, self.layered.view())
 
     def _at_cells(self, values: NDArray[Any]) -> Array:
         """Values (cells,) at the places of their nodes 0, (places,)."""
@@ -180,10 +191,8 @@ class CrackingEngine(ExplicitEngine):
 
     def lean_energy(self, u: Array, live: BoolArray) -> float:
         """As `Engine.lean_energy`."""
-        x, g = np.zeros_like(self.motion.y[:2]), self.grid
-        x[:, : g.nx, : g.ny] = u.T.reshape(2, g.nx, g.ny)
-        on = self._at_cells(np.where(live, self.varied.springs[:, PLANE], 0.0))
-        return float(lean_energy(x.shape[2], x.reshape(2, -1), on, self.layered.view()))
+        my, layered = self.motion.y.shape[2], self.layered.view()
+        return float(lean_energy(self.grid.ny, my, np.ascontiguousarray(u), live, self.varied.springs, layered))
 
     def lean_strain(self) -> Array:
         """Membrane strain of all cells from their slopes: xx, yy, shear in engineering measure, (3, cells)."""

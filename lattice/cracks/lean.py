@@ -18,12 +18,12 @@ from typing import NamedTuple
 
 from lattice.compiled import compiled
 from lattice.cracks.cells import TURNING
-from lattice.cracks.kinematics import gradients
 from lattice.cracks.motion import Layered, Nodes, dot
 from lattice.explicit.kernels import Span
 from lattice.explicit.layout import LANES, LINE, U_X, U_Y, Motion, W
 from lattice.explicit.screen import Screen, membrane_sums, reached
-from lattice.grid import Array
+from lattice.grid import Array, BoolArray
+from lattice.varied import PLANE
 
 Membrane = tuple[float, float, float]  #: along x and y, and shear in engineering measure
 #: lines of ``OnNodes.rows``: strains, stresses, forces across the sheet and energy of a row of cells
@@ -48,6 +48,13 @@ def membrane_force(x: float, y: float, s: float, S: Membrane) -> Membrane:
 def slopes(c: int, i: int, j: int, q: float, y: Array) -> tuple[float, float]:
     """Along x and y, of a component of y (5, rows, my) in cell (i, j)."""
     A, B, C, D = y[c, i, j], y[c, i + 1, j], y[c, i, j + 1], y[c, i + 1, j + 1]
+    return (B - A + D - C) * q, (C - A + D - B) * q
+
+
+@compiled(inline="always")
+def slopes_in(n: int, ny: int, c: int, q: float, u: Array) -> tuple[float, float]:
+    """As `slopes`, of the cell that begins at node n of u (nodes, components)."""
+    A, B, C, D = u[n, c], u[n + ny, c], u[n + 1, c], u[n + ny + 1, c]
     return (B - A + D - C) * q, (C - A + D - B) * q
 
 
@@ -179,18 +186,20 @@ def overloaded_leaning(
 
 
 @compiled(nogil=True)
-def lean_energy(my: int, u: Array, live: Array, layered: Layered) -> float:
-    """Energy by which slopes add to the springs of elastic cells at displacements u (2, places) [J].
+def lean_energy(ny: int, my: int, u: Array, live: BoolArray, share: Array, layered: Layered) -> float:
+    """Energy by which slopes add to the springs of ``live`` (cells,) elastic cells at displacements u (nodes, 2) [J].
 
-    ``live`` (places,) is as `Intact.plane` at the cells that are counted, else 0.
+    Their springs in the plane are ``share`` (cells, 2) as stiff as those of mean ice, see `lattice.varied`.
     """
     q, g, total, S = 0.5 / layered.plate.d, layered.lean.strain, 0.0, membrane_stiffness(layered)
-    for b in range(live.shape[0]):
-        if live[b] > 0.0:
-            xx, xy, _ = gradients(b, my, q, u[0])
-            yx, yy, _ = gradients(b, my, q, u[1])
+    for cell in range(live.shape[0]):
+        if live[cell]:
+            i, j = cell // (ny - 1), cell % (ny - 1)
+            n, b = i * ny + j, i * my + j
+            xx, xy = slopes_in(n, ny, 0, q, u)
+            yx, yy = slopes_in(n, ny, 1, q, u)
             N = membrane_force(g[0, b], g[1, b], g[2, b], S)
             own = N[0] * (xx + 0.5 * g[0, b]) + N[1] * (yy + 0.5 * g[1, b]) + N[2] * (xy + yx + 0.5 * g[2, b])
-            total += live[b] * own
+            total += share[cell, PLANE] * own
     energy: float = layered.plate.d**2 * total
     return energy

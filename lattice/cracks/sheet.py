@@ -65,12 +65,11 @@ class CrackingSheet(ExplicitSheet):
     def _break(self, w: Window, done: int, out: Outcome, release: Release) -> None:  # noqa: ARG002  nothing leaves
         """Cells that reached their limit in the last sub-step begin to crack, all of them."""
         e, now, ended, half = self.engine, w.t + done * self.engine.dt, self._at(0.0), self._at(0.5)
-        utilisation, before = self._utilisation(ended), self._utilisation(self._at(1.0))
+        utilisation = self._utilisation(ended)
         cells = np.flatnonzero(utilisation >= 1.0)
         if not len(cells):
             return
-        rise = np.maximum(utilisation[cells] - before[cells], 1e-300)
-        part = np.clip((1.0 - before[cells]) / rise, 0.0, 1.0)
+        part = self._reached(cells, utilisation[cells])
         order = np.lexsort((cells, part))
         cells, part = cells[order], part[order]
         if out.failure is None:
@@ -87,7 +86,7 @@ class CrackingSheet(ExplicitSheet):
             self.energy.book_failure(cell, half)
             self.energy.fracture -= e.begin(cell, angle)
             self.intact[cell] = False
-        self._set_cells()
+        e.lose_springs(cells)
 
     def _eased(self) -> Standing:
         return replace(self.standing, lean=self.engine.lean_strain())

@@ -13,6 +13,8 @@ from lattice.ice import Ice
 from lattice.strain import CellState
 from lattice.varied import Varied
 
+EVERY = slice(None)  #: cells
+
 
 @dataclass(frozen=True)
 class Standing:
@@ -43,17 +45,19 @@ class Judge:
         beside = beside_tips(self.grid, live)
         return Standing(live, beside, tensile_limits(self.grid, beside, self.ice))
 
-    def utilisation(self, u: Array, q: Array, standing: Standing) -> Array:
-        """Of all cells, (cells,); 0 for those that are not live. FloatingPointError if one is not a number."""
-        state = CellState.of(self.grid, u, q, None, standing.limit, standing.lean, self.varied.thickness)
-        worst = self._each(state, standing.beside)
+    def utilisation(self, u: Array, q: Array, standing: Standing, cells: IntArray | slice = EVERY) -> Array:
+        """Of these cells or all, (cells,); 0 for those that are not live. FloatingPointError if one is not a number."""
+        lean, some = standing.lean, None if isinstance(cells, slice) else cells
+        lean = None if lean is None else lean[:, cells]
+        state = CellState.of(self.grid, u, q, some, standing.limit[cells], lean, self.varied.thickness[cells])
+        worst = self._each(state, standing.beside[cells])
         utilisation = worst[0]
         for other in worst[1:]:
             utilisation = np.maximum(utilisation, other)
-        utilisation = self.varied.weakness * utilisation
+        utilisation = self.varied.weakness[cells] * utilisation
         if not np.isfinite(utilisation).all():
             raise FloatingPointError("the sheet's motion is not finite: use a shorter window (coupling.window)")
-        return np.where(standing.live, utilisation, 0.0)
+        return np.where(standing.live[cells], utilisation, 0.0)
 
     def causes(self, u: Array, q: Array, standing: Standing, cells: IntArray) -> list[str]:
         """Name of the criterion with the largest utilisation of each of these cells."""
