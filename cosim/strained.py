@@ -13,7 +13,7 @@ import numpy as np
 
 from cosim.stresses import Line, Stresses
 from coupling.scheduler import Scheduler
-from lattice.criteria.judge import Judge, Standing
+from lattice.criteria.judge import EVERY, Judge, Standing
 from lattice.criteria.laws import BETA, INTERCEPT, SLOPE
 from lattice.criteria.mohr import Circle, circle, circle_of_connections, faces
 from lattice.floe import Floe
@@ -104,10 +104,10 @@ class Watching(Judge):
         """What a checkpoint keeps: between two windows nothing is left of what is watched."""
         return {name: value for name, value in vars(self).items() if name not in ("_reached", "_last")}
 
-    def utilisation(self, u: Array, q: Array, standing: Standing) -> Array:
+    def utilisation(self, u: Array, q: Array, standing: Standing, cells: IntArray | slice = EVERY) -> Array:
         """As `Judge.utilisation`."""
         self._last = u, q, standing
-        return super().utilisation(u, q, standing)
+        return super().utilisation(u, q, standing, cells)
 
     def causes(self, u: Array, q: Array, standing: Standing, cells: IntArray) -> list[str]:
         """As `Judge.causes`; of this state and the one judged last, that which is nearer to the limit is kept."""

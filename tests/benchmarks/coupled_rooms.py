@@ -3,10 +3,11 @@
     python tests/benchmarks/coupled_rooms.py [--duration 25] [--after 10] [--initial 3000] [--nodes 60]
                                              [--scenario NAME] [--set A.B=V]
 
-Prints processor seconds per simulated second from ``--after`` on (goal: below 1 on one core) and the share of each
-room; what the settling of the initial rubble takes stands apart. Timers stand at the doors of the rooms and count what
-happens inside without the rooms that are entered from there. The compiled loops are entered from Python once per
-sub-step of the rubble; what is left between them is the room "Python".
+Prints seconds of processor and of wall per simulated second from ``--after`` on (goal: below 1) and the share of each
+room; what the settling of the initial rubble takes stands apart. Windows are done by one thread and by two in turn,
+which is the same run because the bits are the same: so both see the same ice and the same load of the machine. Timers
+stand at the doors of the rooms and count what happens inside without the rooms that are entered from there. The
+compiled loops are entered from Python once per sub-step of the rubble; what is left between them is the room "Python".
 """
 
 from __future__ import annotations
@@ -17,14 +18,13 @@ import os
 import tempfile
 import time
 from collections import defaultdict
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from threadpoolctl import threadpool_limits
 
 import coupling.rubble_port.initial
-import lattice.cracks.engine
-import lattice.explicit.engine
 import rubble.neighbours
 import rubble.sections
 import rubble.window
@@ -34,10 +34,14 @@ from cosim.recording.writer import Recorder
 from cosim.scenario.loading import load_scenario
 from coupling.rubble_port import RubblePort
 from coupling.sheet_port import SheetPort
+from lattice.cracks.engine import CrackingEngine
+from lattice.explicit.engine import ExplicitEngine
+from lattice.team import TILES
 
+Spent = tuple[float, float]  #: time of the processor, both cores of it, and of the wall [s]
 #: room: doors, (where, name)
 DOORS: dict[str, list[tuple[Any, str]]] = {
-    "lattice kernels": [(lattice.cracks.engine, "march_cracked"), (lattice.explicit.engine, "march")],
+    "lattice kernels": [(CrackingEngine, "loop"), (ExplicitEngine, "loop")],
     "rubble kernels": [
         (rubble.window, "advance_substeps"),
         (rubble.neighbours, "find_sides"),
@@ -49,12 +53,23 @@ DOORS: dict[str, list[tuple[Any, str]]] = {
 }
 
 
+def now() -> Spent:
+    """What has been spent so far."""
+    return time.process_time(), time.perf_counter()
+
+
+def added(a: Spent, b: Spent, sign: float = 1.0) -> Spent:
+    """A and, with this sign, b."""
+    return a[0] + sign * b[0], a[1] + sign * b[1]
+
+
 class Clock:
-    """Processor time spent in each room, without the rooms entered from it [s]."""
+    """Time spent in each room by each number of threads, without the rooms entered from it."""
 
     def __init__(self) -> None:
-        self.time: dict[str, float] = defaultdict(float)
-        self._inside = [0.0]
+        self.threads = 1
+        self.time: dict[tuple[str, int], Spent] = defaultdict(lambda: (0.0, 0.0))
+        self._inside: list[Spent] = [(0.0, 0.0)]
         for room, doors in DOORS.items():
             for where, name in doors:
                 self._door(where, name, room)
@@ -64,20 +79,33 @@ class Clock:
 
         @functools.wraps(inner)
         def timed(*args: Any, **kwargs: Any) -> Any:
-            start = time.process_time()
-            self._inside.append(0.0)
+            start = now()
+            self._inside.append((0.0, 0.0))
             try:
                 return inner(*args, **kwargs)
             finally:
-                whole = time.process_time() - start
-                self.time[room] += whole - self._inside.pop()
-                self._inside[-1] += whole
+                whole = added(now(), start, -1.0)
+                key = room, self.threads
+                self.time[key] = added(self.time[key], added(whole, self._inside.pop(), -1.0))
+                self._inside[-1] = added(self._inside[-1], whole)
 
         setattr(where, name, timed)
 
 
-def measure(a: argparse.Namespace) -> tuple[float, float, dict[str, float], int]:
-    """Processor time of settling and of the seconds that count [s], that by room [s], blocks at the end."""
+@dataclass
+class Measured:
+    """What was spent."""
+
+    settling: float  #: of the processor before the run [s]
+    rooms: dict[tuple[str, int], Spent]  #: by room and threads
+    busy: dict[int, Spent]  #: in all, by threads
+    windows: dict[int, int]  #: that count, by threads
+    window: float  #: their length [s]
+    blocks: int  #: at the end
+
+
+def measure(a: argparse.Namespace) -> Measured:
+    """Runs the case; its windows are done by one thread and by two in turn where its cracks close."""
     scenario = load_scenario(
         a.scenario,
         [
@@ -87,23 +115,31 @@ def measure(a: argparse.Namespace) -> tuple[float, float, dict[str, float], int]
             *a.overrides,
         ],
     )
-    clock = Clock()
+    clock, busy, windows = Clock(), defaultdict[int, Spent](lambda: (0.0, 0.0)), defaultdict[int, int](int)
     with threadpool_limits(1), tempfile.TemporaryDirectory() as folder:
         start = time.process_time()
         scheduler, recorder = build(scenario), Recorder(Path(folder) / "run.mcap")
         settling = time.process_time() - start
         recorder.on_start(run_info(scenario))
-        counts = False
+        assert isinstance(scheduler.sheet, SheetPort)
+        engine: Any = scheduler.sheet.sheet.engine
+        sides, done = range(1, (TILES if isinstance(engine, CrackingEngine) else 1) + 1), 0
         while scheduler.t_ns < scenario.duration_ns:
-            if not counts and scheduler.t_ns >= a.after * 1e9:
+            counts = scheduler.t_ns >= a.after * 1e9
+            clock.threads = engine.threads = sides[done % len(sides)] if counts else 1
+            if not counts:
                 clock.time.clear()
-                counts, start = True, time.process_time()
+            before = now()
             frame = scheduler.macro_step()
             grip_of(frame, scenario.moment_point)
             recorder.on_frame(frame)
-        busy = time.process_time() - start
+            done += 1
+            if counts:
+                busy[clock.threads] = added(busy[clock.threads], added(now(), before, -1.0))
+                windows[clock.threads] += 1
         recorder.on_close()
-    return settling, busy, dict(clock.time), scheduler.rubble.blocks().count
+    blocks = scheduler.rubble.blocks().count
+    return Measured(settling, dict(clock.time), dict(busy), dict(windows), scenario.window_ns / 1e9, blocks)
 
 
 def main() -> None:
@@ -115,17 +151,24 @@ def main() -> None:
     parser.add_argument("--scenario", default="basin_2010_floe_165m")
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="A.B=V")
     a = parser.parse_args()
-    settling, busy, rooms, blocks = measure(a)
-    counted = a.duration - a.after
+    m = measure(a)
     print(
-        f"{a.scenario}, {a.nodes} x {a.nodes} nodes, {a.initial:g} m3 of initial rubble, {blocks} blocks at the end, "
+        f"{a.scenario}, {a.nodes} x {a.nodes} nodes, {a.initial:g} m3 of initial rubble, {m.blocks} blocks at the end, "
         f"load of the machine {os.getloadavg()[0]:.1f}"
     )
-    print(f"before the run, most of it settling: {settling:.1f} s of processor time")
-    print(f"{counted:g} s from {a.after:g} s on: {busy:.1f} s of processor time, {busy / counted:.2f} per second")
-    rooms["Python"] = busy - sum(rooms.values())
-    for room, spent in sorted(rooms.items(), key=lambda item: -item[1]):
-        print(f"  {room:16s} {spent / counted:6.3f} {spent / busy:6.1%}")
+    print(f"before the run, most of it settling: {m.settling:.1f} s of processor time")
+    for threads, busy in m.busy.items():
+        counted, left = m.windows[threads] * m.window, busy
+        rooms = {room: spent for (room, n), spent in m.rooms.items() if n == threads}
+        for spent in rooms.values():
+            left = added(left, spent, -1.0)
+        rooms["Python"] = left
+        print(
+            f"{threads} thread(s), {counted:.2f} s from {a.after:g} s on, per second: "
+            f"{busy[0] / counted:.2f} s of processor, {busy[1] / counted:.2f} s of wall"
+        )
+        for room, spent in sorted(rooms.items(), key=lambda item: -item[1][1]):
+            print(f"  {room:16s} {spent[0] / counted:6.3f} {spent[1] / counted:6.3f} {spent[1] / busy[1]:6.1%} of wall")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Slab
 from rubble.plates import orient_all
-from rubble.round import closed, deepest, depth_at, spot_at
+from rubble.round import closed, deepest, depth_at, is_beside, spot_at, widest_between
 from tests.rubble.cone_scene import WIDTH, H, cone_cut, rectangle
 
 GENERATOR = np.array([(-20.0, 5.0), (-10.0, 5.0), (5.0, 20.0)])  #: of `cone_scene.cone_cut`
@@ -40,6 +40,25 @@ def test_depth_is_the_distance_to_the_surface(rho, z):
 @pytest.mark.parametrize(("rho", "z"), [(15.1, 0.0), (5.1, -15.0), (3.0, 5.1), (3.0, -20.1)])
 def test_outside_there_is_no_depth(rho, z):
     assert depth_at(BODY, rho, z)[0] < 0.0
+
+
+def test_the_body_is_as_wide_between_two_heights_as_sampling_finds_it():
+    """Below, within and above; an edge farther away than that has no point in the body, and few others have none."""
+    random, fine = np.random.default_rng(5), np.linspace(-20.0, 5.0, 200001)
+    for low, high in np.sort(random.uniform(-24.0, 9.0, (200, 2)), axis=1):
+        inside = fine[(fine >= low) & (fine <= high)]
+        widest = radius(inside).max() if len(inside) else -np.inf
+        assert widest_between(BODY, low, high) == pytest.approx(widest, abs=2e-4)
+    told = missed = 0
+    for _ in range(2000):
+        p, q = random.uniform([-25.0, -25.0, -24.0], [25.0, 25.0, 9.0], (2, 3))
+        p, q = p, p + random.uniform(0.02, 0.3) * (q - p)
+        points = p + np.linspace(0.0, 1.0, 101)[:, None] * (q - p)
+        touches = max(depth_at(BODY, np.hypot(x, y), z)[0] for x, y, z in points) > 0.0
+        beside = is_beside(BODY, spot_at(BODY, *p), spot_at(BODY, *q))
+        assert not (beside and touches)
+        told, missed = told + beside, missed + (not beside and not touches)
+    assert told > 5 * missed > 0
 
 
 def test_an_edge_stands_deepest_where_sampling_finds_it():
