@@ -9,9 +9,10 @@ import numpy as np
 
 from coupling.interface import NS, Event
 from lattice.contact import EdgeContact
+from lattice.criteria import judge
 from lattice.criteria.laws import shear_fault
 from lattice.criteria.mohr import Circle, faces, tensile_utilisation
-from lattice.grid import Array
+from lattice.grid import Array, IntArray
 from lattice.ice import Ice
 from lattice.implicit.step import Step
 from lattice.outcome import Outcome
@@ -55,9 +56,9 @@ class Witness(Sheet):
         """Tensile limit of all cells, (cells,) [Pa]."""
         return self.standing.limit
 
-    def _utilisation(self, state: State) -> Array:
+    def _utilisation(self, state: State, cells: IntArray | slice = judge.EVERY) -> Array:
         self._judged = state
-        return super()._utilisation(state)
+        return super()._utilisation(state, cells)
 
     def _locate(self, t: float, step: Step, contact: EdgeContact) -> tuple[float, Array]:
         found = super()._locate(t, step, contact)

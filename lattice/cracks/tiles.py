@@ -112,9 +112,7 @@ def sweep_tile(tile: Tile, motion: Motion, mesh: Mesh, lines: Array) -> None:
 
 
 @compiled(nogil=True, borrows=True)
-def move(
-    tile: Tile, motion: Motion, mesh: Mesh, load: PointForces, touch: Touch, sums: Sums, layered: Layered
-) -> None:
+def move(tile: Tile, motion: Motion, mesh: Mesh, load: PointForces, touch: Touch, sums: Sums, layered: Layered) -> None:
     """Nodes go on by a sub-step."""
     go, rows = mesh.pace.go, tile.rows
     sweep_tile(tile, motion, mesh, layered.nodes.lines)
