@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lattice.contact import Faces
 from lattice.cracks.make import Measured, cracking_sheet
 from lattice.explicit.forces import NOTHING, indenter
 from lattice.explicit.layout import W
@@ -15,8 +16,18 @@ from lattice.team import CREW, TILES
 ICE = Ice(E=5e9, nu=0.3, h=1.0, rho_i=900.0, rho_w=1025.0, sigma_t=5e5, sigma_f=5e5, sigma_c=5e6)
 
 
-def pressed(threads, nx=21, ny=18, blocks=40):
-    """A clamped floe that is pushed down in the middle until it is cracked all over; what is known of it then."""
+def faces(m, overlap):
+    """One point at each of m nodes that presses down where the node overlaps by so much and as it moves up."""
+    up, shape = np.zeros((m, 1, 3)), (m, 1)
+    up[..., 2] = 1.0
+    return Faces(np.full(shape, overlap), np.zeros(shape), up, np.full(shape, 1.0), -2.0 * up, 1e9, 2e6)
+
+
+def pressed(threads, nx=21, ny=18, blocks=40, crushing=False):
+    """A clamped floe that is pushed down in the middle until it is cracked all over; what is known of it then.
+
+    By springs, or by a contact that is that at the end of a sub-step.
+    """
     g = Grid(nx, ny, 2.0)
     edge = np.zeros(g.nodes, bool)
     edge[np.concatenate([g.edge_nodes(side) for side in ("x-", "x+", "y-", "y+")])] = True
@@ -30,6 +41,8 @@ def pressed(threads, nx=21, ny=18, blocks=40):
     touch = indenter(np.arange(2, g.nx - 2) * g.ny + middle, g.ny, 0.02 * float(e.inertia_q[2::3].min()) / e.dt**2)
     for k in range(blocks):
         touch.at[:, W] = -2e-3 * (k + 1)
+        if crushing:
+            touch = touch._replace(faces=faces(len(touch.row), 1e-3 * (k + 1)))
         made = e.march(10, NOTHING, touch, lively=k % 2 == 0)
         seen += [made.steps, made.contact, made.contact_work, made.loss, made.hold]
         if made.failed:
@@ -44,6 +57,13 @@ def test_two_threads_have_the_bits_of_one():
     assert losses["cracking"] > 0.0
     assert losses["turning"] != 0.0
     assert pressed(2)[2] == bits
+
+
+def test_so_they_have_where_the_contact_is_that_at_the_end_of_a_sub_step():
+    count, _, bits = pressed(1, crushing=True)
+    assert count > 10
+    assert bits != pressed(1)[2]
+    assert pressed(2, crushing=True)[2] == bits
 
 
 @pytest.mark.parametrize("nx", [2, 3, 4])
