@@ -26,7 +26,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coupling.contact_forces import Sampled, forces_of
 from coupling.contact_friction import friction_at
 from coupling.interface import Array, IntArray, Path, Structure
 from coupling.structure import moved
@@ -104,13 +103,19 @@ class OverlapContact:
     def evaluate(self, t: float, y: Array) -> tuple[Array, Array]:
         """Force on the ice (m, 3) [N] and tangent (m, 3, 3) [N/m] at displacements y (m, 3): an `EdgeContact`."""
         m = len(self.nodes)
+        force, tangent = np.zeros((m, 3)), np.zeros((m, 3, 3))
         L, normal = self.overlap(t, y)
         on = np.flatnonzero(L.any(axis=1))
         if not len(on):
-            return np.zeros((m, 3)), np.zeros((m, 3, 3))
+            return force, tangent
         L, normal = L[on], normal[on]
-        at = Sampled(L, normal, *self.pressure(L, on), self._grip(normal, on))
-        force, tangent = forces_of(on, at, self._width, self._h)
+        sin, cos, growing, length = self._length(L, normal)
+        pressure, stiffness = self.pressure(L, on)
+        per_area = (self._width[on, None] / SAMPLES)[..., None] * self._direction(normal, sin, on)
+        force[on] = (per_area * (pressure * length)[..., None]).sum(axis=1)
+        slope = per_area * (stiffness * length + np.where(growing, pressure / np.maximum(cos, 1e-12), 0.0))[..., None]
+        for k in range(3):  # dL/dy and dL/dw are -dx/dy and -dx/dz of the face
+            tangent[on, :, k] = (slope * (normal[..., k] / normal[..., 0])[..., None]).sum(axis=1)
         return force, tangent
 
     def _length(self, L: Array, normal: Array) -> tuple[Array, Array, np.ndarray, Array]:
@@ -128,13 +133,13 @@ class OverlapContact:
         """Called at the end of a window: depth to which the touching edge is crushed, (m, SAMPLES) [m]."""
         return self.overlap(t, displacement())[0]
 
-    def _grip(self, normal: Array, rows: IntArray) -> Array:
-        """Friction up the slope, (k, SAMPLES): the ice slides the way it is pushed, friction holds it back."""
-        most = self._law.friction * self.face
+    def _direction(self, normal: Array, sin: Array, rows: IntArray) -> Array:
+        """Normal plus friction, (k, SAMPLES, 3): the ice slides the way it is pushed, friction holds it back."""
+        up_slope = _up_slope(normal, sin)
         if self.path is None:
-            return np.full(normal.shape[:2], most)
-        sin = np.sqrt(1.0 - normal[..., 2] ** 2)
-        return np.asarray(most * self._slides(up_slope(normal, sin), rows))
+            return normal + self._law.friction * self.face * up_slope
+        slides = self._slides(up_slope, rows)
+        return normal + self._law.friction * self.face * slides[..., None] * up_slope
 
     def _slides(self, up_slope: Array, rows: IntArray) -> Array:
         """1 where ice slides over a structure that moves as it is pushed, -1 where the other way; (k, SAMPLES).
@@ -158,11 +163,11 @@ class OverlapContact:
         mu = np.full(len(force), self._law.friction)
         _, normal = self.overlap(self._t, y[: len(self.nodes)])
         normal = normal[rows]
-        ahead = up_slope(normal, np.sqrt(1.0 - normal[..., 2] ** 2))
-        mu[rows] *= self._slides(ahead, rows).mean(axis=1)
+        up_slope = _up_slope(normal, np.sqrt(1.0 - normal[..., 2] ** 2))
+        mu[rows] *= self._slides(up_slope, rows).mean(axis=1)
         return friction_at(self._s, mu, self.face, height, force)
 
 
-def up_slope(normal: Array, sin: Array) -> Array:
+def _up_slope(normal: Array, sin: Array) -> Array:
     """Direction up the face (k, SAMPLES, 3) that looks along ``normal`` and stands at an angle of this ``sin``."""
     return np.asarray((np.array([0.0, 0.0, 1.0]) - normal[..., 2:] * normal) / sin[..., None])

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from coupling.contact import SAMPLES, OverlapContact, up_slope
+from coupling.contact import SAMPLES, OverlapContact
 from coupling.interface import Array, IntArray
 
 NEAR = 0.02  #: distance from the structure that an edge may go in a sub-step, in thicknesses
@@ -74,8 +74,7 @@ class CrushingContact(OverlapContact):
         (L, _), (ahead, normal) = self.overlap(t, y), self.overlap(t, y, near)
         sin, cos = np.sqrt(1.0 - normal[..., 2] ** 2), np.abs(normal[..., 2])
         sin, cos = np.maximum(sin, STEEP), np.maximum(cos, STEEP)
-        friction = self._grip(normal, np.arange(len(y)))[..., None] * up_slope(normal, sin)
-        per_area = (self._width[:, None] / SAMPLES)[..., None] * (normal + friction)
+        per_area = (self._width[:, None] / SAMPLES)[..., None] * self._direction(normal, sin, np.arange(len(y)))
         overlap, grows, law = np.where(L > 0.0, L, ahead - near), normal / normal[..., :1], self._law
         way = per_area / cos[..., None]
         return overlap, self._crushed, grows, self._h * cos / sin, way, law.stiffness, law.strength
