@@ -66,7 +66,7 @@ def cell_loop(p: dict[str, Any], steps: int) -> float:
     for w in path(p["amplitude"] * p["d"], p["loops"], steps):
         x[W, 2:] = w
         evaluate(0, x, np.zeros((5, 4)), 2, plate, law, cracks, FLAT)
-    return float(cracks.losses[RUBBING])
+    return float(cracks.losses[:, RUBBING].sum())
 
 
 def twin_loop(p: dict[str, Any]) -> float:
