@@ -57,7 +57,6 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         pitch=pitch,
         origin=origin,
         domain=domain,
-        threads=r.threads,
     )
 
 

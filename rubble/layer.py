@@ -48,12 +48,11 @@ class RubbleLayer(Readings):
         solids: Solids = open_water,
         generator: Array | None = None,
         domain: Domain | None = None,
-        threads: int = 1,
     ) -> None:
         if not (isfinite(pitch) and pitch > 0):
             raise ValueError(f"section pitch is {pitch:g} m; a section needs a width > 0")
         self.physics, self.pitch, self.origin = physics, pitch, origin
-        self.domain, self.threads = domain or Domain(), threads
+        self.domain = domain or Domain()
         self.store = Store(physics, pitch)
         self.table_of_sections = SectionTable(physics, pitch, origin, solids)
         self.runner = Runner(physics, NO_BODY if generator is None else closed(generator))
@@ -65,8 +64,8 @@ class RubbleLayer(Readings):
         self.time = 0.0  #: [s]
 
     def connect_like(self, other: RubbleLayer) -> None:
-        """Takes structure and threads from the layer of which this one is a copy."""
-        self.table_of_sections.solids, self.threads = other.table_of_sections.solids, other.threads
+        """Takes the structure from the layer of which this one is a copy."""
+        self.table_of_sections.solids = other.table_of_sections.solids
 
     @property
     def sections(self) -> dict[int, Section]:

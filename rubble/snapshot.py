@@ -19,7 +19,7 @@ def save(layer: RubbleLayer) -> bytes:
 
 
 def restore(saved: bytes, like: RubbleLayer) -> RubbleLayer:
-    """A layer from `save`; structure and threads are those of the layer ``like``."""
+    """A layer from `save`; its structure is that of the layer ``like``."""
     layer = pickle.loads(saved)
     if not isinstance(layer, RubbleLayer):
         raise ValueError("these bytes are no snapshot of a rubble layer; use what rubble.snapshot.save returned")

@@ -66,4 +66,3 @@ class Rubble(Section):
     #: of the heap as which it is spread round the structure; assumption, the test of IceFloe has 40 deg [rad]
     initial_slope: Annotated[Angle, Limits("10 deg", "45 deg", "35 deg")] = radians(35.0)
     initial_porosity: float = Field(0.3, ge=0.12, le=0.6, examples=[0.3])  #: pore share of that rubble
-    threads: Annotated[int, Field(ge=1, le=1024)] = 1  #: without effect: all contacts are solved together, on one

@@ -62,7 +62,6 @@ class RubblePort:
         pitch: float,
         origin: float,
         domain: Domain,
-        threads: int = 1,
     ):
         """``pitch`` and ``origin``: width of a section and y of section 0 [m]."""
         bottom, top = max(structure.bottom, -domain.depth), structure.top
@@ -82,7 +81,6 @@ class RubblePort:
             solids=solids,
             generator=structure.generator(bottom, top),
             domain=domain,
-            threads=threads,
         )
         self.physics = physics
         self.lockstep = False  #: windows are met step by step (`begin`, `meet`, `end`)

@@ -2,8 +2,8 @@
 
     python tests/benchmarks/rubble_speed.py [--settle 40] [--seconds 2] [--repeat 10]
 
-Claims: at least 1.8 times real time on one core, 3 times on two; less than 30 % slower than plain pymunk; the same bits
-with one thread and with two. Both piles settle first, so that they have the same contacts. Layer and peer alternate,
+Claims: at least 1.8 times real time; less than 30 % slower than plain pymunk, which may step its sections, that do not
+know of each other, on two threads. Both piles settle first, so that they have the same contacts. Layer and peer alternate,
 and the best of the repeats counts: other work on the machine only ever slows a run down.
 """
 
@@ -54,8 +54,8 @@ def outlines(section: int) -> list[tuple[np.ndarray, float]]:
     return [(place(box, x, z, angle, 0.0, 0.0), angle) for x, z, angle in places]
 
 
-def our_layer(threads: int) -> RubbleLayer:
-    layer = RubbleLayer(PHYSICS, WIDTH, solids=lambda y: plane(BIN), threads=threads)
+def our_layer() -> RubbleLayer:
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=lambda y: plane(BIN))
     for key in range(SECTIONS):
         for outline, angle in outlines(key):
             middle = float(outline.mean(axis=0) @ [np.cos(angle), np.sin(angle)])
@@ -107,9 +107,8 @@ class Plain:
         list((self.pool.map if self.pool else map)(steps, self.spaces))
 
 
-def settled(make, threads: int, seconds: float):
-    """What ``make`` gives, run until its pile has formed."""
-    what = make(threads)
+def settled(what, seconds: float):
+    """The same, run until its pile has formed."""
     for _ in range(round(seconds / PHYSICS.substep / WINDOW)):
         what.advance(WINDOW)
     return what
@@ -124,26 +123,21 @@ def factor(what, seconds: float) -> float:
 
 
 def measure(settle: float, seconds: float, repeat: int) -> dict[str, float]:
-    """Best factors of layer and peer with one thread and two, and whether the bits are the same."""
-    made = {
-        f"{name}_{threads}": settled(make, threads, settle)
-        for threads in (1, 2)
-        for name, make in (("layer", our_layer), ("plain", Plain))
-    }
-    same = made["layer_1"].table().position.tobytes() == made["layer_2"].table().position.tobytes()
+    """Best factors of the layer, and of the peer with one thread and two."""
+    made = {"layer": settled(our_layer(), settle)}
+    made |= {f"plain_{threads}": settled(Plain(threads), settle) for threads in (1, 2)}
     best = dict.fromkeys(made, 0.0)
     for _ in range(repeat):
         for name, what in made.items():
             best[name] = max(best[name], factor(what, seconds))
-    contacts = int(made["layer_1"].runner.contacts)
+    contacts = int(made["layer"].runner.contacts)
     pairs = (
         sum(len(s._get_arbiters()) for s in made["plain_1"].spaces),
-        sum(len(s.space._get_arbiters()) for s in made["layer_1"].sections.values()),
+        sum(len(s.space._get_arbiters()) for s in made["layer"].sections.values()),
     )
     return {
         **best,
-        "same_bits": float(same),
-        "overhead": best["plain_1"] / best["layer_1"] - 1.0,
+        "overhead": best["plain_1"] / best["layer"] - 1.0,
         "contacts": contacts,
         "pairs_plain": pairs[0],
         "pairs_layer": pairs[1],
@@ -162,12 +156,8 @@ def main() -> None:
         f"{os.getloadavg()[0]:.1f}; {r['contacts']:.0f} contacts, pairs {r['pairs_layer']:.0f} (layer) and "
         f"{r['pairs_plain']:.0f} (plain)"
     )
-    for threads, claim in ((1, 1.8), (2, 3.0)):
-        print(
-            f"{threads} thread(s): layer {r[f'layer_{threads}']:.2f} x real time (claim {claim}), "
-            f"plain pymunk {r[f'plain_{threads}']:.2f}"
-        )
-    print(f"overhead on one thread {r['overhead']:.0%} (claim < 30 %), same bits {bool(r['same_bits'])}")
+    print(f"layer {r['layer']:.2f} x real time (claim 1.8), plain pymunk {r['plain_1']:.2f}, on two {r['plain_2']:.2f}")
+    print(f"overhead on one thread {r['overhead']:.0%} (claim < 30 %)")
 
 
 if __name__ == "__main__":

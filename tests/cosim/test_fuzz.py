@@ -70,7 +70,7 @@ velocity = "0.3 m/s"
 cracks = "open"
 [rubble]
 friction_ice_ice = 0.1
-threads = 1
+initial_porosity = 0.3
 [coupling]
 window = "50 ms"
 [recording]

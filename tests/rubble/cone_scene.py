@@ -36,8 +36,8 @@ def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
     )
 
 
-def filled(threads=1, **kwargs):
-    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, threads=threads, **kwargs)
+def filled(**kwargs):
+    layer = RubbleLayer(PHYSICS, WIDTH, solids=cone_cut, **kwargs)
     for key in (2, -1, 0, -2, 1):
         for i in range(8):
             add(layer, key, -17.5 - 5.5 * (i % 4), -3.2 - 3.2 * (i // 4))

@@ -20,11 +20,10 @@ WIDTH, H, PHYSICS, cone_cut, rectangle = scene.WIDTH, scene.H, scene.PHYSICS, sc
 add, filled, drive, picture = scene.add, scene.filled, scene.drive, scene.picture
 
 
-def test_two_runs_give_the_same_bits_with_one_thread_and_with_two():
-    runs = [drive(filled(threads), 60) for threads in (1, 1, 2)]
+def test_two_runs_give_the_same_bits():
+    runs = [drive(filled(), 60) for _ in range(2)]
     assert runs[0].load_on_structure.any()
     assert picture(runs[0]) == picture(runs[1])
-    assert picture(runs[0]) == picture(runs[2])
 
 
 def test_layers_side_by_side_do_not_disturb_each_other():

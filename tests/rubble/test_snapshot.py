@@ -22,13 +22,6 @@ def test_a_run_goes_on_from_its_checkpoint_with_the_same_bits(scene):
     assert live.cleared == again.cleared
 
 
-def test_a_copy_with_two_threads_has_the_same_bits(scene):
-    live, saved = checkpoint(scene.drive(scene.filled(), 30))
-    two = restore(saved, live)
-    two.threads = 2
-    assert scene.picture(scene.drive(two, 30)) == scene.picture(scene.drive(live, 30))
-
-
 def test_loading_disturbs_nothing(scene):
     """Contacts keep their history: a settled pile goes on as if nothing had happened."""
     layer = RubbleLayer(scene.PHYSICS, scene.WIDTH, solids=scene.cone_cut)
