@@ -3,8 +3,8 @@
     python tests/benchmarks/rubble_speed.py [--settle 40] [--seconds 2] [--repeat 10]
 
 Claims: at least 1.8 times real time; less than 30 % slower than plain pymunk, which may step its sections, that do not
-know of each other, on two threads. Both piles settle first, so that they have the same contacts. Layer and peer alternate,
-and the best of the repeats counts: other work on the machine only ever slows a run down.
+know of each other, on two threads. Both piles settle first, so that they have the same contacts. Layer and peer
+alternate, and the best of the repeats counts: other work on the machine only ever slows a run down.
 """
 
 from __future__ import annotations
