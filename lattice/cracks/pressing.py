@@ -14,7 +14,8 @@ from lattice.compiled import compiled
 from lattice.contact import Faces
 from lattice.explicit.forces import Touch
 from lattice.explicit.kernels import push
-from lattice.explicit.layout import PHI_X, Motion, PerNode, W
+from lattice.explicit.layout import Motion, PerNode
+from lattice.explicit.march import add_moments, moved_point
 from lattice.grid import Array
 
 HALVINGS = 40  #: of the interval in which the force is, to 1e-12 of its width
@@ -37,20 +38,13 @@ def press(touch: Touch, now: Array, then: Array, motion: Motion, kick: PerNode, 
     x, goes, half = np.empty(3), np.empty((3, 3)), 0.0
     for k in range(len(touch.row)):
         i, j, h, lead = touch.row[k], touch.column[k], touch.height[k], touch.lead[k]
-        y, v = motion.y[:, i, j], motion.v[:, i, j]
-        for b in range(3):
-            x[b] = y[b] - alpha * v[b] - touch.at[k, b]
-        x[0] += h * (y[3] - alpha * v[3])
-        x[1] += h * (y[4] - alpha * v[4])
-        x[2] -= lead * (y[PHI_X] - alpha * v[PHI_X])
+        moved_point(touch, k, motion, alpha, x)
         u, w, phi = dt * kick.u[i, j], dt * kick.w[i, j], dt * kick.phi[i, j]
         goes[:] = 0.0
         goes[0, 0], goes[1, 1], goes[2, 2] = u + h * h * phi, u + h * h * phi, w + lead * lead * phi
         goes[0, 2] = goes[2, 0] = -h * lead * phi
         force_at_end(touch.faces, k, x, goes, now)
-        for a in range(2):
-            now[k, a + 3] = h * now[k, a]
-        now[k, PHI_X] -= lead * now[k, W]
+        add_moments(touch, k, now)
         for c in range(5):
             half += 0.5 * now[k, c] * then[k, c]
     push(touch.row, touch.column, now, motion, kick, dt + alpha)

@@ -6,6 +6,8 @@ forces act between `sweep` and the first `push`, on nodes, like those of loads. 
 
 from __future__ import annotations
 
+import numpy as np
+
 from lattice.compiled import compiled
 from lattice.explicit.forces import Made, PointForces, Sums, Touch
 from lattice.explicit.kernels import Span, power_of_springs, pull_of_springs, push, sweep
@@ -15,24 +17,37 @@ from lattice.grid import Array, IntArray
 
 
 @compiled(nogil=True)
+def moved_point(touch: Touch, k: int, motion: Motion, alpha: float, x: Array) -> None:
+    """How far the point of contact k is from ``at``, into x (3,) [m]."""
+    y, v, lead, i, j = motion.y, motion.v, touch.lead[k], touch.row[k], touch.column[k]
+    for b in range(3):
+        x[b] = y[b, i, j] - alpha * v[b, i, j] - touch.at[k, b]
+        if b == W and lead != 0.0:
+            x[b] -= lead * (y[PHI_X, i, j] - alpha * v[PHI_X, i, j])
+        if b < W:
+            x[b] += touch.height[k] * (y[b + 3, i, j] - alpha * v[b + 3, i, j])
+
+
+@compiled(nogil=True)
+def add_moments(touch: Touch, k: int, now: Array) -> None:
+    """Moments about its node of the force at the point of contact k, beside it into ``now`` (m, 5) [N m]."""
+    for a in range(2):
+        now[k, a + 3] = touch.height[k] * now[k, a]
+    if touch.lead[k] != 0.0:
+        now[k, PHI_X] -= touch.lead[k] * now[k, W]
+
+
+@compiled(nogil=True)
 def contact_force(touch: Touch, now: Array, motion: Motion, alpha: float) -> None:
     """Contact at the end of its levers, linear about the displacement ``at``: into ``now`` (m, 5) [N], [N m]."""
-    y, v, height = motion.y, motion.v, touch.height
-    for k in range(len(height)):
-        i, j = touch.row[k], touch.column[k]
+    x = np.empty(3)
+    for k in range(len(touch.row)):
+        moved_point(touch, k, motion, alpha, x)
         now[k, :3] = touch.force[k]
         for b in range(3):
-            moved = y[b, i, j] - alpha * v[b, i, j] - touch.at[k, b]
-            if b == W and touch.lead[k] != 0.0:
-                moved -= touch.lead[k] * (y[PHI_X, i, j] - alpha * v[PHI_X, i, j])
-            if b < W:
-                moved += height[k] * (y[b + 3, i, j] - alpha * v[b + 3, i, j])
             for a in range(3):
-                now[k, a] += touch.tangent[k, a, b] * moved
-        for a in range(2):
-            now[k, a + 3] = height[k] * now[k, a]
-        if touch.lead[k] != 0.0:
-            now[k, PHI_X] -= touch.lead[k] * now[k, W]
+                now[k, a] += touch.tangent[k, a, b] * x[b]
+        add_moments(touch, k, now)
 
 
 @compiled(nogil=True, borrows=True)
