@@ -16,7 +16,7 @@ from rubble.arrays import Array, rows
 from rubble.breaking import Break
 from rubble.cut import Solids, open_water
 from rubble.domain import Domain
-from rubble.geometry import overlap_area
+from rubble.geometry import contiguous, overlap_area
 from rubble.joints import no_joints
 from rubble.lost import Lost
 from rubble.moving import moved_cut, stand
@@ -30,6 +30,7 @@ from rubble.sections import SectionTable
 from rubble.sheet import IMPULSE, MEETS, MET, SheetBody, SheetMotion, Sheets
 from rubble.shore import follow
 from rubble.store import Store
+from rubble.trim import cut_away
 from rubble.window import NO_BODY, Runner
 
 
@@ -85,9 +86,13 @@ class RubbleLayer(Readings):
         return self.origin + key * self.pitch
 
     def trim(self, polygon: Array, section: int) -> Array:
-        """What is left of an outline (k, 2) outside the structure in a section, convex; (0, 2) if nothing is."""
+        """What is left of an outline (k, 2) outside the structure in a section, convex; (0, 2) if nothing is.
+
+        A piece is as wide as its section: in a body of revolution it stands deepest at the side nearer to the axis.
+        """
         own = self.section(section)
-        return moved_cut(own.trim, self.runner.moving, own.y, polygon)
+        cut = self.table_of_sections.widest(own.y) if len(self.runner.body) else own.cut
+        return moved_cut(lambda outline: cut_away(contiguous(outline), cut), self.runner.moving, own.y, polygon)
 
     def add_block(
         self,

@@ -11,11 +11,9 @@ from pymunk._chipmunk_cffi import ffi, lib
 from rubble.arbiters import PairList, note_pair
 from rubble.arrays import Array, Records, filled
 from rubble.cut import FACE, Cut
-from rubble.geometry import contiguous
 from rubble.physics import RubblePhysics
 from rubble.pointers import address
 from rubble.sheet import ICE, STRUCTURE_CATEGORY, SheetBody
-from rubble.trim import cut_away
 
 STRUCTURE = 2  #: collision type of the structure
 ANY_OVERLAP = 1e9  #: slop of the spaces [m]: pymunk itself pushes nothing apart
@@ -85,10 +83,6 @@ class Section:
         self.__dict__.update(state)
         self.pairs = PairList()
         self.connect()
-
-    def trim(self, polygon: Array) -> Array:
-        """What is left of a convex outline outside the structure, convex; (0, 2) if nothing is."""
-        return cut_away(contiguous(polygon), self.cut)
 
 
 def _new_space() -> pymunk.Space:

@@ -77,9 +77,13 @@ class SectionTable:
             section.cut_anew(self._cut(section.y), self._aside)
 
     def _cut(self, y: float) -> Cut:
-        """The structure in the plane y."""
+        """The structure in the plane y, or where it is widest beside it."""
+        return self.widest(y) if self._wide else self.solids(y - self._aside)
+
+    def widest(self, y: float) -> Cut:
+        """A body of revolution where it is widest within half a section of the plane y."""
         y -= self._aside
-        return self.solids(np.copysign(max(abs(y) - 0.5 * self.pitch, 0.0), y) if self._wide else y)
+        return self.solids(float(np.copysign(max(abs(y) - 0.5 * self.pitch, 0.0), y)))
 
     def in_use(self, store: Store) -> list[int]:
         """Numbers of the sections that the plates stand in now, ascending."""

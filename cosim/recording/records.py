@@ -43,10 +43,13 @@ class DamageError(RecordingError):
 
 
 class Records:
-    """Iterates over the records of a file; afterwards ``cut`` tells whether it was cut off."""
+    """Iterates over the records of a file; afterwards ``cut`` tells whether it was cut off.
+
+    ``chunks`` counts those begun: messages between which it does not change share one.
+    """
 
     def __init__(self, path: Path) -> None:
-        self.path, self.cut = path, False
+        self.path, self.cut, self.chunks = path, False, 0
         if not path.is_file():
             raise RecordingError(f"{path}: no such recording; `cosim run SCENARIO -o {path.name}` writes one")
         with path.open("rb") as file:
@@ -96,6 +99,7 @@ class Records:
     def _unpack(self, chunk: Chunk) -> Iterator[McapRecord]:
         """Records of a chunk; no more memory than its size says, which is bounded by that of the file."""
         self._unpacked += chunk.uncompressed_size
+        self.chunks += 1
         if self._unpacked > max(HARMLESS, EXPANSION * self._size):
             raise ValueError(f"it unpacks to more than {self._unpacked / 2**20:.0f} MiB, no recording does so")
         if chunk.compression == "zstd":

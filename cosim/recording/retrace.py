@@ -70,16 +70,19 @@ class Retraced:
 def retrace(writer: Any, path: Path, since: Since, first: str) -> Mapping[str, int]:
     """Writes all messages again up to the end of a window; how many there are of each topic.
 
-    ``first`` is the topic with which windows begin. RecordingError where the file does not reach so far.
+    ``first`` is the topic with which windows begin; chunks end where they ended, every checkpoint with one.
+    RecordingError where the file does not reach so far.
     """
     count: dict[str, int] = {}
-    reached = 0
-    for topic, message in _messages(path):
+    reached, begun = 0, 1
+    for topic, message, chunk in _messages(path):
         if topic == first:
             if message.log_time > since.t_ns:
                 break
             reached = message.log_time
+        if chunk != begun:
             writer.flush()
+            begun = chunk
         writer.add_message(message.channel_id, message.log_time, message.data, message.publish_time, message.sequence)
         count[topic] = message.sequence
     if reached != since.t_ns:
@@ -91,10 +94,12 @@ def retrace(writer: Any, path: Path, since: Since, first: str) -> Mapping[str, i
     return count
 
 
-def _messages(path: Path) -> Iterator[tuple[str, Message]]:
+def _messages(path: Path) -> Iterator[tuple[str, Message, int]]:
+    """With their topic and the number of their chunk."""
     topic: dict[int, str] = {}
-    for record in Records(path):
+    records = Records(path)
+    for record in records:
         if isinstance(record, Channel):
             topic[record.id] = record.topic
         elif isinstance(record, Message):
-            yield topic[record.channel_id], record
+            yield topic[record.channel_id], record, records.chunks

@@ -1,8 +1,9 @@
 """Recordings written: a run becomes an MCAP file.
 
-Scenario, reference and run data are written first, and the file is flushed after every window, so that a killed run
-leaves a file that holds all windows but the one under way. All is under checksums, see `cosim.recording.records`. The
-same scenario gives the same bits: stamps are simulated time, and nothing of the machine (clock, path, user) is written.
+Scenario, reference and run data are written first, and the file is flushed after every `CHUNK_NS` of simulated time, so
+that a killed run leaves a file that lacks no more than that and the window under way. All is under checksums, see
+`cosim.recording.records`. The same scenario gives the same bits: stamps are simulated time, and nothing of the machine
+(clock, path, user) is written.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from cosim.scenario.files import read_toml
 from cosim.scenario.scenario import Scenario
 from coupling.interface import Event, Frame
 
+CHUNK_NS = 250_000_000  #: of simulated time in a chunk of the file; a longer window is a chunk [ns]
 VIEWS = 60  #: in a run, of what stock viewers draw
 VIEW_TIMES = 2.0  #: at least between two of them, in times (h / g)^0.5 of ice of thickness h
 
@@ -88,6 +90,7 @@ class Recorder:
     def settle(self) -> Since:
         """All of the file is on the disk; from where it could go on."""
         if self._file is not None:
+            self._do(self._writer.flush)
             self._do(os.fsync, self._file.fileno())
         return Since(self.recorded_ns, self._due_ns, self._view_ns)
 
@@ -98,7 +101,8 @@ class Recorder:
             self._write(event.t_ns, {When.EVENT}, event)
         if self._is_recorded(frame):
             self._write(frame.t_ns, {When.PICTURE, When.VIEW} if self._with_view(frame) else {When.PICTURE}, frame)
-        self._do(self._writer.flush)
+        if frame.t_ns // CHUNK_NS > self.recorded_ns // CHUNK_NS:
+            self._do(self._writer.flush)
         self.recorded_ns = frame.t_ns
 
     def on_close(self) -> None:
@@ -168,8 +172,7 @@ class Recorder:
     def _write(self, t_ns: int, when: set[When], *item: Frame | Event) -> None:
         """One message of every channel that is due and has something to say."""
         for topic, channel in self._channels.items():
-            data = channel.take(self._info, *item) if channel.when in when else None
-            if data is not None:
+            if channel.when in when and (data := channel.take(self._info, *item)) is not None:
                 self._count[topic] = self._count.get(topic, 0) + 1
                 self._do(self._writer.add_message, self._number[topic], t_ns, data, t_ns, self._count[topic])
 
