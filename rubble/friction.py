@@ -17,8 +17,3 @@ def rate_dependent(v: float) -> float:
 def coefficient(mu: Friction) -> float:
     """The number of a law for the kernels: negative for the rate-dependent one."""
     return -1.0 if mu == RATE_DEPENDENT else float(mu)
-
-
-def at_rest(mu: Friction) -> float:
-    """The number of a law for surfaces that do not slide."""
-    return float(rate_dependent(0.0)) if mu == RATE_DEPENDENT else float(mu)

@@ -10,7 +10,7 @@ from rubble.arrays import Array, IntArray
 from rubble.books import BOOKS, GROUND, SHIFT
 from rubble.breaking import Break, Breaking, part
 from rubble.edges import Edges
-from rubble.friction import at_rest, coefficient
+from rubble.friction import coefficient
 from rubble.gather import Scene
 from rubble.joints import Joints
 from rubble.moving import resting
@@ -173,9 +173,8 @@ class Runner:
 
     def _surface(self) -> Surface:
         p = self.physics
-        of_pair = at_rest if self.planar else coefficient  # the speed with which a pile is laid is none of the ice
-        mu = of_pair(p.mu_ice_ice), of_pair(p.mu_structure)
-        return Surface(*mu, p.mu_bed, p.restitution, 1.0 - BIAS ** (p.substep / p.pace), p.slop)
+        bias, mu = 1.0 - BIAS ** (p.substep / p.pace), (coefficient(p.mu_ice_ice), coefficient(p.mu_structure))
+        return Surface(*mu, p.mu_bed, p.restitution, bias, p.slop)
 
     def _known_pressure(self, store: Store) -> Array:
         unknown = np.full(6, np.nan)
