@@ -36,6 +36,10 @@ def _attempts(scenario: Scenario) -> Iterator[Callable[[], object]]:
         from cosim.ice.broken import broken
 
         yield partial(broken, folder / sheet.broken, grid)
+    if scenario.rubble.pieces:
+        from cosim.ice.pieces import checked
+
+        yield partial(checked, folder / scenario.rubble.pieces, scenario)
     motion = scenario.structure.motion
     if motion is not None and motion.kind == "fmu":
         yield partial(_is_there, folder / motion.file)  # a model of others is not started to be looked at

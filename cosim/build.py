@@ -73,8 +73,8 @@ def build(scenario: Scenario, motion: Motion | None = None, *, begins: bool = Tr
     ledger = Ledger(port.initial_mass if sheet.present.all() else port.mass)
     if isinstance(rubble, RubblePort):
         rubble.on_crushed = ledger.crush
-        if begins and scenario.rubble.initial_volume > 0.0:
-            lay_rubble(port, rubble, initial_rubble(scenario))
+        if begins:
+            _earlier_ice(scenario, port, rubble)
             ledger.initial_mass += rubble.mass
     scheme = build_scheme(scenario)
     if motion is not None and way is not None:
@@ -88,6 +88,16 @@ def build(scenario: Scenario, motion: Motion | None = None, *, begins: bool = Tr
         build_steering(scenario),
         scenario.duration_ns,
     )
+
+
+def _earlier_ice(scenario: Scenario, sheet: SheetPort, rubble: RubblePort) -> None:
+    """Rubble that is there before the run: a heap that settles, or the pieces of another run."""
+    if scenario.rubble.initial_volume > 0.0:
+        lay_rubble(sheet, rubble, initial_rubble(scenario))
+    if scenario.rubble.pieces:
+        from cosim.ice.pieces import put  # few runs begin with pieces
+
+        put((scenario.folder or Path()) / scenario.rubble.pieces, scenario, sheet, rubble)
 
 
 def build_scheme(scenario: Scenario) -> Scheme:
@@ -133,13 +143,13 @@ def build_structure(scenario: Scenario) -> Structure:
 
 
 def build_sheet(scenario: Scenario, ice: Ice, structure: Structure) -> Floe:
-    """The floe, its front on the structure's axis plane just touching the face with the edge that meets it first."""
+    """The floe, ``sheet.gap`` before its front touches the face on the structure's axis plane with its first edge."""
     s = scenario.sheet
-    front = structure.foremost_x(ice.freeboard if structure.faces_down else ice.freeboard - ice.h)
+    front = structure.foremost_x(ice.freeboard if structure.faces_down else ice.freeboard - ice.h) - s.gap
     grid = Grid.rectangle(s.length, s.width, s.nodes[0], s.nodes[1], front - s.length, -s.axis)
     state = _broken(scenario, grid)
     if state is not None:
-        grid = replace(grid, x0=grid.x0 + room_before(structure, ice, grid, state.gone))
+        grid = replace(grid, x0=grid.x0 + room_before(structure, ice, grid, state.gone) - s.gap)
     sheet = _whole_sheet(scenario, ice, grid)
     if state is not None:
         try:

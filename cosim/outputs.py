@@ -49,6 +49,7 @@ MAGIC = {
     ".md": b"# Evidence of brash",
     ".bench.md": b"# Benchmarks of brash",
     ".json": b'{\n  "evidence"',
+    ".pieces": b'{\n "format": "brash pieces',
 }
 #: kinds that hold what was simulated, and what a user may do about one that exists
 GROWS = {

@@ -147,9 +147,13 @@ def quaternion_of(axes: Array) -> Array:
 
 def prism_at(outline: Array, y: float, width: float, density: float) -> tuple[Prism, Array]:
     """A prism of one width with its place (3,) from an outline (k, 2), both in the axes of its plate."""
-    own = _checked(outline)
-    ends = np.array([own[:, 0].min(), own[:, 0].max()])
-    prism, (x, z) = make_prism(own, ends, np.array([width]), density)
+    ends = np.array([outline[:, 0].min(), outline[:, 0].max()])
+    return prism_of(outline, y, ends, np.array([width]), density)
+
+
+def prism_of(outline: Array, y: float, cuts: Array, widths: Array, density: float) -> tuple[Prism, Array]:
+    """The same of strips: widths (s,) between cuts (s + 1,) along x. ValueError if the outline is not convex."""
+    prism, (x, z) = make_prism(_checked(outline), cuts, widths, density)
     return prism, np.array([x, y, z])
 
 

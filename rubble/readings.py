@@ -41,6 +41,15 @@ class Readings:
         return self.store.list
 
     @property
+    def corners(self) -> Array:
+        """Corners of the prisms of all plates, those of one side and then those of the other (c, 3) [m]."""
+        plates, pieces = self.store.plates, self.store.tables.pieces
+        piece = np.repeat(np.arange(len(pieces.plate)), np.diff(pieces.offset))
+        k, (x, z) = pieces.plate[piece], pieces.corners.T
+        own = [np.column_stack((x, pieces.y[piece] + 0.5 * side * pieces.width[piece], z)) for side in (-1.0, 1.0)]
+        return np.concatenate([plates.position[k] + np.einsum("nij,nj->ni", plates.rotation[k], b) for b in own])
+
+    @property
     def rear(self) -> float:
         """X of the rearmost corner of all plates; inf if there are none [m]."""
         plates, pieces = self.store.plates, self.store.tables.pieces

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -24,6 +23,9 @@ if TYPE_CHECKING:
 
 
 IceOption = Annotated[Path | None, typer.Option(help="write cracks and lost ice at the end (.csv, .parquet)")]
+PiecesOption = Annotated[
+    Path | None, typer.Option(help="write all pieces of ice at the end, for a floe that follows (.json)")
+]
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,7 @@ class RunFiles:
 
     output: Annotated[Path | None, typer.Option("-o", "--output", help="write a recording (.mcap)")] = None
     ice: IceOption = None
+    pieces: PiecesOption = None
     force: ForceOption = False
     checkpoint_every: Annotated[
         str | None, typer.Option(metavar="TIME", help="as --set recording.checkpoint_every: for `cosim resume`")
@@ -52,6 +55,8 @@ class RunFiles:
             writable(self.output, ".mcap", inputs, self.force)
         if self.ice is not None:
             writable(self.ice, _kind(self.ice), inputs, self.force)
+        if self.pieces is not None:
+            writable(self.pieces, ".pieces", inputs, self.force)
 
 
 @talking
@@ -85,6 +90,7 @@ def run(
         talk.detail(line)
     observers: list[Observer] = [ProgressBar(talk)]
     files.check(loaded.inputs)
+    _need_rubble(files.pieces, loaded)
     if dry_run:
         _dry_run(loaded, about, as_json)
         return
@@ -92,13 +98,14 @@ def run(
         observers.append(Recorder(files.output, force=files.force))
         observers += [Companion(files.output)] if files.follow else []
     compile_ahead(loaded, talk)
-    _tell(simulate(loaded, observers, _at_end(files.ice)), files.output, as_json, talk)
+    _tell(simulate(loaded, observers, _at_end(loaded, files.ice, files.pieces)), files.output, as_json, talk)
 
 
 @talking
 def resume(
     recording: RunArgument,
     ice: IceOption = None,
+    pieces: PiecesOption = None,
     as_json: JsonOption = False,
     *,
     talk: Talk,
@@ -111,13 +118,15 @@ def resume(
     from cosim.watched import simulate
 
     run = interrupted(recording)
-    if ice is not None:
-        writable(ice, _kind(ice), [recording, *run.scenario.inputs])
+    _need_rubble(pieces, run.scenario)
+    for path, kind in ((ice, _kind(ice)), (pieces, ".pieces")):
+        if path is not None:
+            writable(path, kind, [recording, *run.scenario.inputs])
     for text in run.warnings:
         talk.warn(text)
     talk.detail(f"goes on at {run.since.t_ns / 1e9:g} s")
     observers: list[Observer] = [Recorder(recording, since=run.since), ProgressBar(talk)]
-    _tell(simulate(run.scenario, observers, _at_end(ice), run.kept), recording, as_json, talk)
+    _tell(simulate(run.scenario, observers, _at_end(run.scenario, ice, pieces), run.kept), recording, as_json, talk)
 
 
 def _tell(result: dict[str, Any], recording: Path | None, as_json: bool, talk: Talk) -> None:
@@ -130,12 +139,18 @@ def _tell(result: dict[str, Any], recording: Path | None, as_json: bool, talk: T
     print_json(result) if as_json else print_run(result, talk.level)
 
 
-def _at_end(ice: Path | None) -> Callable[[Scheduler], None] | None:
-    return None if ice is None else partial(_keep_ice, ice)
+def _at_end(scenario: Scenario, ice: Path | None, pieces: Path | None) -> Callable[[Scheduler], None]:
+    def keep(scheduler: Scheduler) -> None:
+        if ice is not None:
+            _keep_ice(ice, scheduler)
+        if pieces is not None:
+            _keep_pieces(pieces, scenario, scheduler)
+
+    return keep
 
 
-def _kind(ice: Path) -> str:
-    return ".parquet" if ice.suffix == ".parquet" else ".ice"
+def _kind(ice: Path | None) -> str:
+    return ".parquet" if ice is not None and ice.suffix == ".parquet" else ".ice"
 
 
 def _keep_ice(path: Path, scheduler: Scheduler) -> None:
@@ -146,6 +161,19 @@ def _keep_ice(path: Path, scheduler: Scheduler) -> None:
     assert isinstance(scheduler.sheet, SheetPort)
     with whole(path, _kind(path)) as part:
         write(scheduler.sheet.sheet, part)
+
+
+def _need_rubble(pieces: Path | None, scenario: Scenario) -> None:
+    if pieces is not None and not scenario.rubble.enabled:
+        raise InputError("--pieces writes the rubble of a run, and rubble.enabled is false; leave one of the two out")
+
+
+def _keep_pieces(path: Path, scenario: Scenario, scheduler: Scheduler) -> None:
+    """Writes all pieces, as `rubble.pieces` reads them; the sheet is used up."""
+    from cosim.ice.pieces import write
+
+    with whole(path, ".pieces") as part:
+        write(scheduler, scenario, part)
 
 
 def _dry_run(scenario: Scenario, about: dict[str, Any], as_json: bool) -> None:

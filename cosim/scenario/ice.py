@@ -144,6 +144,9 @@ class Sheet(Section):
     #: what (crack or gone) and angle [deg] of the crack's normal, as `cosim run --ice` writes it; or a recording of a
     #: run with the same sheet
     broken: str = Field("", max_length=500, examples=["ice.csv"])
+    #: from the place where its front would just touch the structure to where it begins: over it the floe drifts alone,
+    #: into what lies there (`rubble.pieces`) [m]
+    gap: Annotated[LengthOrZero, Limits("0 m", "100 km", "20 m")] = 0.0
     #: that march a sheet with closing cracks side by side, each on a core of its own; the same bits with one and two
     threads: Annotated[int, Field(ge=1, le=2)] = 1
 

@@ -66,3 +66,6 @@ class Rubble(Section):
     #: of the heap as which it is spread round the structure; assumption, the test of IceFloe has 40 deg [rad]
     initial_slope: Annotated[Angle, Limits("10 deg", "45 deg", "35 deg")] = radians(35.0)
     initial_porosity: float = Field(0.3, ge=0.12, le=0.6, examples=[0.3])  #: pore share of that rubble
+    #: pieces of earlier ice where and as they were at the end of another run, as `cosim run --pieces` writes them, in
+    #: place of initial_volume
+    pieces: str = Field("", max_length=500, examples=["pieces.json"])

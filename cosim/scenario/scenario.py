@@ -71,9 +71,10 @@ class Scenario:
 
     @property
     def named_files(self) -> list[tuple[str, str]]:
-        """Keys that name files of places on the sheet, and these files."""
+        """Keys that name files of places on the sheet or of pieces, and these files."""
         named = [(f"ice.{f}.file", field.file) for f in FIELDS if (field := getattr(self.ice, f)) is not None]
-        return [(key, name) for key, name in (*named, ("sheet.broken", self.sheet.broken)) if name]
+        named += [("sheet.broken", self.sheet.broken), ("rubble.pieces", self.rubble.pieces)]
+        return [(key, name) for key, name in named if name]
 
     @property
     def inputs(self) -> list[Path]:

@@ -15,6 +15,7 @@ from coupling.interface import (
     Answer,
     Array,
     ContactForces,
+    Fragment,
     IntArray,
     Load,
     Path,
@@ -39,6 +40,7 @@ from coupling.sheet_port.view import view
 from coupling.sheet_port.watch import Watch
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
+from lattice.fragments import components
 from lattice.loads import NodeLoad
 from lattice.memory import recall, remember
 from lattice.state import StepError
@@ -144,6 +146,12 @@ class SheetPort:
         touching = bool(np.isin(nodes, self.contact.nodes).any())
         self._leaving.add(fragment(self.sheet, self.motion, self.front, nodes), self.motion.t, touching=touching)
         self.front.renew()
+
+    def remains(self) -> list[Fragment]:
+        """What is left of the sheet as pieces, one for each part that hangs together; the sheet is used up."""
+        label = np.where(self.sheet.present, components(self.sheet.grid, self.sheet.intact), -1)
+        parts = [np.flatnonzero(label == k) for k in np.unique(label[label >= 0])]
+        return [fragment(self.sheet, self.motion, self.front, nodes) for nodes in parts]
 
     def _meet(self, answer: Answer | None) -> NodeLoad:
         """The load of a window in lockstep."""

@@ -120,6 +120,16 @@ def ice_can_slide(m: Any) -> Faults:
             )
 
 
+def rubble_comes_from_one_place(m: Any) -> Faults:
+    """Pieces of another run are there in place of a heap."""
+    if not m.rubble.pieces:
+        return
+    if m.rubble.initial_volume > 0.0:
+        yield fault("rubble.pieces", "are there besides an initial_volume; give one of the two")
+    if not m.rubble.enabled:
+        yield fault("rubble.pieces", "needs rubble.enabled = true; remove one of the two")
+
+
 RULES = (
     has_a_shape,
     narrows_to_its_neck,
@@ -127,4 +137,5 @@ RULES = (
     profile_is_that_of_a_body,
     ice_meets_the_slope,
     ice_can_slide,
+    rubble_comes_from_one_place,
 )
