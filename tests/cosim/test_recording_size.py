@@ -18,7 +18,7 @@ PER_SECOND, ONCE = 0.2e6, 0.2e6  #: bytes, of this case at 10 frames per second
 
 
 class Sizes:
-    """Sizes of files after each window, which are flushed by then."""
+    """Sizes of files after each window; what is written of the last quarter of a second is not in the file yet."""
 
     def __init__(self, *paths):
         self.paths, self.t, self.sizes = paths, [], []
