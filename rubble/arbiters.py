@@ -19,6 +19,7 @@ from rubble.pointers import number, pointer, set_integer
 
 #: pairs counted in a sub-step, pairs that fit into the list, address of the list
 LIST = record(integers=("count", "room", "address"))
+COUNT, ROOM, ADDRESS = 0, 8, 16  #: bytes from its start to each of them
 
 
 @callback("void(voidptr, voidptr, voidptr)")

@@ -104,13 +104,14 @@ def find_banks(scene: Scene, pieces: Pieces, thickness: float, banks: Banks) -> 
     return found
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _cut(scene: Scene, s: int, e: int) -> bool:
     """Whether the plane of section e cuts the plate of slice s: its contact with the sheet is found there."""
     slices = scene.slices
-    own = (slices.section == e) & (slices.plate == slices.plate[s])
-    cut: bool = own.any()
-    return cut
+    for other in range(slices.section.shape[0]):
+        if slices.section[other] == e and slices.plate[other] == slices.plate[s]:
+            return True
+    return False
 
 
 @compiled(nogil=True)

@@ -13,7 +13,7 @@ from rubble.gather import Scene
 from rubble.rows import Rows, go_on
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def first_of(old: Rows, before: int, slot: int) -> int:
     """The first of ``before`` rows with this end a; ``before`` if there is none."""
     last = 0
@@ -22,7 +22,7 @@ def first_of(old: Rows, before: int, slot: int) -> int:
     return last
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def go_on_from(rows: Rows, c: int, old: Rows, last: int, before: int, cut: bool) -> int:
     """Row c goes on from its own of the sub-step before, at ``last`` or behind; returns where it looked last."""
     own = rows.point[c]
@@ -37,7 +37,7 @@ def go_on_from(rows: Rows, c: int, old: Rows, last: int, before: int, cut: bool)
     return last
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def bounds(scene: Scene, rows: Rows, start: int, end: int, width: float) -> None:
     """What contacts of ice of a width [m] carry until it crushes: strength times width times length, shared by them."""
     left, right, low, high, length = np.inf, -np.inf, np.inf, -np.inf, scene.shortest

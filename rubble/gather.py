@@ -5,16 +5,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import carray  # type: ignore[attr-defined]  # numba exports it without saying so
 
-from rubble.arbiters import LIST
+from rubble.arbiters import ADDRESS, COUNT, ROOM
 from rubble.arrays import Array, IntArray, Record, Records
 from rubble.compiled import compiled
 from rubble.cut import nearest
 from rubble.edges import Edges, deeper_on_sheet
 from rubble.moving import Moving, aside, from_axes, turned
 from rubble.plates import Plates, times
-from rubble.pointers import ArbiterLayout, BodyLayout, integer, pointer, real, set_integer, short
+from rubble.pointers import ArbiterLayout, BodyLayout, integer, real, set_integer, short
 from rubble.rows import ICE, SHEET, STEEPEST, STRUCTURE, Rows, go_on, set_arms, set_normal
 from rubble.slices import Pieces, Slices, strayed
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
@@ -57,7 +56,7 @@ class Scene(NamedTuple):
     body: Array  #: (k, 2) r and z of its closed generator if it is a body of revolution, else (0, 2), see `prisms` [m]
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
     """Rows of all contacts of this sub-step; returns how many, or minus what went wrong: see `stepping`.
 
@@ -66,12 +65,12 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
     sections, slots, layout = scene.sections, scene.slots, scene.sections.arbiter
     count = 0
     for i in range(sections.space.shape[0]):
-        found = carray(pointer(sections.pairs[i]), 1, LIST)[0]
-        if found.count > found.room:
+        found = sections.pairs[i]
+        pairs, arbiters = integer(found + COUNT), integer(found + ADDRESS)
+        if pairs > integer(found + ROOM):
             return -1
-        arbiters = carray(pointer(found.address), found.room, np.int64)
-        for k in range(found.count):
-            arbiter = arbiters[k]
+        for k in range(pairs):
+            arbiter = integer(arbiters + 8 * k)
             a = slot_of(integer(arbiter + layout.body_a), slots.address, slots.slot)
             b = slot_of(integer(arbiter + layout.body_b), slots.address, slots.slot)
             points = short(arbiter + layout.points)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import carray  # type: ignore[attr-defined]  # numba exports it without saying so
 
-from rubble.arbiters import LIST
+from rubble.arbiters import COUNT
 from rubble.compiled import compiled
 from rubble.gather import Scene
 from rubble.moving import move_structure, own_axes
 from rubble.plates import times
-from rubble.pointers import pointer, set_real, step_space
+from rubble.pointers import set_integer, set_real, step_space
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def find_pairs(scene: Scene) -> None:
     """Put the bodies where plates and edges are, and let pymunk find contacts, section by section."""
     plates, slices, sections, edges = scene.plates, scene.slices, scene.sections, scene.edges
@@ -35,5 +34,5 @@ def find_pairs(scene: Scene) -> None:
             set_real(edges.body[e] + layout.z, z)
             set_real(edges.body[e] + layout.angle, moving.place[4])
     for i in range(sections.space.shape[0]):
-        carray(pointer(sections.pairs[i]), 1, LIST)[0].count = 0
+        set_integer(sections.pairs[i] + COUNT, 0)
         step_space(sections.step, sections.space[i], scene.dt)

@@ -84,7 +84,7 @@ def times(m: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     )
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def orient(plates: Plates, i: int) -> None:
     """Rotation and inverse inertia in the fixed axes of plate i, from its quaternion."""
     w, x, y, z = plates.quaternion[i]
@@ -106,7 +106,7 @@ def orient_all(plates: Plates) -> None:
         orient(plates, i)
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def turn(plates: Plates, i: int, dt: float) -> float:
     """Turn plate i for a time; returns the kinetic energy that it gains, because the step is finite [J]."""
     v, s, r = plates.motion[i], plates.shift[i], plates.rotation[i]

@@ -25,8 +25,10 @@ from rubble.moving import aside, from_axes, own_axes, turned
 from rubble.plates import times
 from rubble.round import SURELY, Spot, deepest, is_beside, spot_at, turns_outwards, widest_between
 from rubble.rows import STRUCTURE, Rows, set_arms, set_normal
+from rubble.slices import CORNERS
 from rubble.slots import ROUND_SLOT
 
+SPOT, DEPTH = 6, 3  #: numbers of a `Spot`, and which of them is its depth
 AXIS = 1e-9  #: distance from the axis below which a point has no bearing, in radii
 
 
@@ -59,7 +61,7 @@ def _along(scene: Scene, k: int, axis: int) -> tuple[float, float, float]:
     return x, dy - d[5] * x + d[3] * z, z
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _prism(scene: Scene, i: int) -> Prism:
     """Piece i."""
     pieces, k = scene.pieces, scene.pieces.plate[i]
@@ -147,16 +149,22 @@ def _rim(scene: Scene, rows: Rows, c: int, prism: Prism, edge: int, side: float)
     return True
 
 
-@compiled(nogil=True)
-def _corners(body: Array, prism: Prism) -> list[Spot]:
-    """All corners of a prism: n at one end, n at the other."""
+@compiled(nogil=True, borrows=True)
+def _find_corners(body: Array, prism: Prism, spots: Array) -> None:
+    """All corners of a prism, SPOT: n at one end, n at the other."""
     n = prism.outline.shape[0]
-    spots = []
     for i in range(2 * n):
-        x, z = prism.outline[i % n]
+        x, z = prism.outline[i % n, 0], prism.outline[i % n, 1]
         at = _at(prism, x, -prism.half if i < n else prism.half, z)
-        spots.append(spot_at(body, at[0], at[1], at[2]))
-    return spots
+        spot, own = spot_at(body, at[0], at[1], at[2]), spots[i]
+        own[0], own[1], own[2], own[3], own[4], own[5] = spot.x, spot.y, spot.z, spot.depth, spot.n_rho, spot.n_z
+
+
+@compiled(nogil=True, borrows=True)
+def _corner(spots: Array, i: int) -> Spot:
+    """A corner that `_find_corners` has found."""
+    s = spots[i]
+    return Spot(s[0], s[1], s[2], s[3], s[4], s[5])
 
 
 @compiled(nogil=True, borrows=True)
@@ -168,32 +176,31 @@ def _ends(edge: int, n: int) -> tuple[int, int]:
     return edge - 2 * n, edge - n
 
 
-@compiled(nogil=True)
-def _may_touch(body: Array, spots: list[Spot], feature: int) -> bool:
-    """Whether a feature of a prism with these corners comes near the body at all; features as in `_touch`."""
-    n = len(spots) // 2
+@compiled(nogil=True, borrows=True)
+def _may_touch(body: Array, spots: Array, n: int, feature: int) -> bool:
+    """Whether a feature of a prism with these 2n corners comes near the body at all; features as in `_touch`."""
     if feature >= 5 * n:
         return bool(turns_outwards(body, 1 + (feature - 5 * n) // 2))
     if feature < 2 * n:
-        return spots[feature].depth >= 0.0
+        return bool(spots[feature, DEPTH] >= 0.0)
     i, j = _ends(feature - 2 * n, n)
-    p, q = spots[i], spots[j]
+    p, q = _corner(spots, i), _corner(spots, j)
     return p.depth >= 0.0 or q.depth >= 0.0 or not is_beside(body, p, q)
 
 
-@compiled(nogil=True)
-def _touch(scene: Scene, widest: float, rows: Rows, c: int, prism: Prism, spots: list[Spot], feature: int) -> bool:
+@compiled(nogil=True, borrows=True)
+def _touch(scene: Scene, widest: float, rows: Rows, c: int, prism: Prism, spots: Array, feature: int) -> bool:
     """Row c from a feature of a prism: 2n corners, 3n edges, and two places of each rim. Whether it touches."""
-    n = len(spots) // 2
+    n = prism.outline.shape[0]
     if feature >= 5 * n:
         k = feature - 5 * n
         return bool(_rim(scene, rows, c, prism, 1 + k // 2, 1.0 if k % 2 else -1.0))
-    spot = spots[feature % (2 * n)]
+    spot = _corner(spots, feature % (2 * n))
     touches = spot.depth >= 0.0
     if feature >= 2 * n:
         i, j = _ends(feature - 2 * n, n)
-        spot = deepest(scene.body, spots[i], spots[j])
-        touches = spot.depth >= 0.0 and spot.depth > max(spots[i].depth, spots[j].depth)
+        spot = deepest(scene.body, _corner(spots, i), _corner(spots, j))
+        touches = spot.depth >= 0.0 and spot.depth > max(spots[i, DEPTH], spots[j, DEPTH])
     if touches:
         _on_surface(scene, widest, rows, c, spot)
     return bool(touches)
@@ -208,8 +215,15 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
     """
     if scene.body.shape[0] == 0:
         return found
-    slices, pieces = scene.slices, scene.pieces
-    last, c, widest, piece = first_of(old, before, ROUND_SLOT), found, scene.body[:, 0].max(), -1
+    spots, widest = np.empty((2 * CORNERS, SPOT)), float(scene.body[:, 0].max())
+    return int(_rows_of_all(scene, (rows, old), found, before, spots, widest))
+
+
+@compiled(nogil=True, borrows=True)
+def _rows_of_all(scene: Scene, both: tuple[Rows, Rows], found: int, before: int, spots: Array, widest: float) -> int:
+    """The same, with room for the corners of a piece, and the greatest radius of the body [m]."""
+    (rows, old), slices, pieces = both, scene.slices, scene.pieces
+    last, c, piece = first_of(old, before, ROUND_SLOT), found, -1
     for s in range(slices.piece.shape[0]):
         if slices.piece[s] == piece:
             continue
@@ -222,9 +236,9 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
         features = 5 * prism.outline.shape[0] + 2 * (scene.body.shape[0] - 2)
         if rows.point.shape[0] < c + features:
             return -1
-        spots = _corners(scene.body, prism)
+        _find_corners(scene.body, prism, spots)
         for feature in range(features):
-            if not _may_touch(scene.body, spots, feature):
+            if not _may_touch(scene.body, spots, prism.outline.shape[0], feature):
                 continue
             if not _touch(scene, widest, rows, c, prism, spots, feature):
                 continue

@@ -75,7 +75,7 @@ def grown(rows: Rows, count: int) -> Rows:
     return new
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def speed(way: Record, a: Record, b: Record) -> float:
     """Speed of b against a, both MOTION, along a direction of a row."""
     found: float = way.x * (b.x - a.x) + way.y * (b.y - a.y) + way.z * (b.z - a.z)
@@ -84,7 +84,7 @@ def speed(way: Record, a: Record, b: Record) -> float:
     return found
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def go_on(rows: Rows, c: int, old: Rows, at: int, owed: float, cut: bool) -> None:
     """Row c goes on from row ``at`` of the sub-step before; -1: it is a new point and has ``owed`` to give back [m].
 
@@ -101,13 +101,13 @@ def go_on(rows: Rows, c: int, old: Rows, at: int, owed: float, cut: bool) -> Non
         rows.way[c, d].impulse = old.way[at, d].impulse if at >= 0 else 0.0
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def set_way(way: Record, x: float, y: float, z: float) -> None:
     """A direction."""
     way.x, way.y, way.z = x, y, z
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def set_normal(rows: Rows, c: int, x: float, y: float, z: float) -> float:
     """Directions of row c from a normal of any length: it, in the section's plane across it, across both.
 

@@ -16,10 +16,10 @@ import numpy as np
 from rubble.arrays import Array, IntArray, Record
 from rubble.compiled import compiled
 from rubble.gather import Scene
-from rubble.geometry import area_moments, intersection
+from rubble.geometry import AreaMoments, area_moments, intersection
 from rubble.plates import times, turn_back
 from rubble.rows import ICE, Rows, go_on, set_arms, set_way
-from rubble.slices import Pieces, end_along_y
+from rubble.slices import CORNERS, Pieces, end_along_y
 
 SIDE = -1  #: marks a row of two sides
 NEAR = 0.1  #: gap that may close in a window, over the pitch
@@ -96,21 +96,27 @@ def directions(rows: Rows, c: int, n: Array) -> None:
     set_way(rows.way[c, 2], n[1] * tz - n[2] * ty, n[2] * tx - n[0] * tz, n[0] * ty - n[1] * tx)
 
 
-@compiled(nogil=True)
-def outline_of(scene: Scene, s: int) -> Array:
+@compiled(nogil=True, borrows=True)
+def put_outline(scene: Scene, s: int, out: Array) -> None:
     """Corners of a slice in the plane (m, 2) [m]."""
     r, b, p = scene.plates.rotation[scene.slices.plate[s]], scene.slices.anchor[s], scene.plates.position
     h, k = max(np.hypot(r[0, 0], r[2, 0]), 1e-12), scene.slices.plate[s]
     cos, sin = r[0, 0] / h, r[2, 0] / h
     ox, _, oz = times(r, b[0], b[1], b[2])
-    out = np.empty((scene.slices.sides[s], 2))
     for c in range(scene.slices.sides[s]):
         x, z = scene.slices.corners[s, c, 0], scene.slices.corners[s, c, 1]
         out[c, 0], out[c, 1] = p[k, 0] + ox + cos * x - sin * z, p[k, 2] + oz + sin * x + cos * z
-    return out
 
 
 @compiled(nogil=True)
+def outline_of(scene: Scene, s: int) -> Array:
+    """The same in an array of its own."""
+    out = np.empty((scene.slices.sides[s], 2))
+    put_outline(scene, s, out)
+    return out
+
+
+@compiled(nogil=True, borrows=True)
 def apart(a: Array, b: Array) -> tuple[float, float, float]:
     """Gap between two convex outlines along the edge normal on which it is largest, and that normal, from a to b."""
     best, nx, nz = -np.inf, 1.0, 0.0
@@ -130,7 +136,7 @@ def apart(a: Array, b: Array) -> tuple[float, float, float]:
     return best, nx, nz
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _far(a: Array, b: Array, way: float) -> bool:
     """Whether two boxes (lowest x and z, highest x and z) are farther apart than `_meet` brings outlines together."""
     far: bool = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3]) > way
@@ -143,12 +149,20 @@ def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, s
 
     ``order`` lists the slices section by section, ascending, from ``first[i]`` to ``first[i + 1]`` for section i.
     """
+    n = scene.slices.piece.shape[0]
+    return int(_pairs(scene, pieces, (first, order), (np.empty((n, CORNERS, 2)), np.empty((n, 4))), sides))
+
+
+@compiled(nogil=True, borrows=True)
+def _pairs(
+    scene: Scene, pieces: Pieces, listed: tuple[IntArray, IntArray], room: tuple[Array, Array], sides: Sides
+) -> int:
+    """The same, with room for the outlines of the slices and the boxes round them."""
+    (first, order), (outlines, boxes) = listed, room
     slices, near, found = scene.slices, NEAR * scene.pitch, 0
-    outlines = [outline_of(scene, s) for s in range(slices.piece.shape[0])]
-    boxes = np.empty((slices.piece.shape[0], 4))
     for s in range(slices.piece.shape[0]):
-        for d in range(2):
-            boxes[s, d], boxes[s, 2 + d] = outlines[s][:, d].min(), outlines[s][:, d].max()
+        put_outline(scene, s, outlines[s])
+        _box(outlines[s], slices.sides[s], boxes[s])
     for a in range(slices.piece.shape[0]):
         i = slices.section[a] + 1
         if i + 1 >= first.shape[0] or scene.sections.y[i] - scene.sections.y[i - 1] > 1.5 * scene.pitch:
@@ -157,23 +171,43 @@ def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, s
             b = order[o]
             if slices.plate[a] == slices.plate[b] or _far(boxes[a], boxes[b], 1.5 * near):
                 continue
-            gap, nx, nz = apart(outlines[a], outlines[b])
+            both = outlines[a, : slices.sides[a]], outlines[b, : slices.sides[b]]
+            gap, nx, nz = apart(both[0], both[1])
             if gap > near or _both_cut(pieces, slices.piece[a], slices.piece[b]):
                 continue
-            room, both = found < sides.area.shape[0], (outlines[a], outlines[b])
-            if not room or _meet(scene, pieces, (a, b), both, (gap, nx, nz), sides, found):
+            full = found >= sides.area.shape[0]
+            if full or _meet(scene, pieces, (a, b), both, (gap, nx, nz), sides, found):
                 found += 1
     return found
 
 
+@compiled(nogil=True, borrows=True)
+def _box(outline: Array, corners: int, box: Array) -> None:
+    """Lowest x and z, highest x and z of the first corners of an outline."""
+    for d in range(2):
+        box[d], box[2 + d] = outline[0, d], outline[0, d]
+        for c in range(1, corners):
+            box[d], box[2 + d] = min(box[d], outline[c, d]), max(box[2 + d], outline[c, d])
+
+
 @compiled(nogil=True)
+def _common(own: Array, other: Array, dx: float, dz: float) -> AreaMoments:
+    """Area, and its middle, of an outline with another one that is moved."""
+    moved = other.copy()
+    moved[:, 0] -= dx
+    moved[:, 1] -= dz
+    found: AreaMoments = area_moments(intersection(own.copy(), moved))
+    return found
+
+
+@compiled(nogil=True, borrows=True)
 def _both_cut(pieces: Pieces, a: int, b: int) -> bool:
     """Whether one plane cuts both: their contact is found in it."""
     cut: bool = pieces.range[a, 1] >= pieces.range[b, 0]
     return cut
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _meet(
     scene: Scene,
     pieces: Pieces,
@@ -185,11 +219,8 @@ def _meet(
 ) -> bool:
     """The contact of two slices between their planes as pair k; says whether there may be one."""
     (a, b), (gap, nx, nz), near = pair, apart, NEAR * scene.pitch
-    shift = max(gap, 0.0) + 0.5 * near
-    moved = outlines[1].copy()
-    moved[:, 0] -= shift * nx if gap > -near else 0.0
-    moved[:, 1] -= shift * nz if gap > -near else 0.0
-    common = area_moments(intersection(outlines[0], moved))
+    shift = max(gap, 0.0) + 0.5 * near if gap > -near else 0.0
+    common = _common(outlines[0], outlines[1], shift * nx, shift * nz)
     if common.area <= 0.0:
         return False
     x, z = common.x, common.z
@@ -216,7 +247,7 @@ def _meet(
     return True
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _arm(scene: Scene, s: int, out: Array, x: float, y: float, z: float) -> None:
     """A point in the axes of the plate of a slice."""
     k = scene.slices.plate[s]

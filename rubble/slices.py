@@ -129,7 +129,7 @@ def strayed(plates: Plates, slices: Slices, s: int) -> float:
     return way
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def _face(pieces: Pieces, first: int, n: int, edge: int, out: Array) -> None:
     """Outward normal of a face in the plate's axes: of an edge of the outline, or of a side of the piece."""
     if edge >= n:
@@ -163,7 +163,7 @@ def _clip(at: Array, edge: IntArray, m: int, nx: float, nz: float, limit: float,
     return k
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, borrows=True)
 def end_along_y(
     plates: Plates, slices: Slices, pieces: Pieces, s: int, x: float, z: float, sign: float
 ) -> tuple[float, float, float, float]:
