@@ -16,9 +16,10 @@ from rubble.compiled import compiled
 from rubble.edges import locate
 from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
+from rubble.outlines import apart, outline_of
 from rubble.plates import times, turn_back
 from rubble.rows import SHEET, Rows, go_on, set_arms
-from rubble.sides import NEAR, apart, directions, outline_of
+from rubble.sides import NEAR, directions
 from rubble.slices import Pieces, end_along_y
 from rubble.slots import SHEET_SLOT
 

@@ -9,27 +9,29 @@ from __future__ import annotations
 
 import numpy as np
 
+from rubble.arrays import Array
 from rubble.compiled import compiled
 from rubble.corners import bounds, first_of, go_on_from
 from rubble.gather import Scene
+from rubble.outlines import put_outline
 from rubble.rows import BED, Rows, set_arms, set_way
-from rubble.sides import outline_of
 from rubble.slots import BED_SLOT
 
 
 @compiled(nogil=True, borrows=True)
-def bed_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int, cut: bool) -> int:
+def bed_rows(scene: Scene, both: tuple[Rows, Rows], found: int, before: int, cut: bool, corners: Array) -> int:
     """Adds a row for each corner of a slice below the bed; returns the number of rows, -1 if there is no room.
 
-    ``old`` has ``before`` rows. ``cut``: slices are new.
+    ``both``: new rows, and the old ones, of which there are ``before``. ``cut``: slices are new; ``corners`` is room.
     """
+    rows, old = both
     if not np.isfinite(scene.bed):
         return found
     plates, slices, last, c = scene.plates, scene.slices, first_of(old, before, BED_SLOT), found
     for s in range(slices.piece.shape[0]):
         k, start = slices.plate[s], c
-        corners = outline_of(scene, s)
-        for i in range(corners.shape[0]):
+        put_outline(scene, s, corners)
+        for i in range(slices.sides[s]):
             depth = scene.bed - corners[i, 1]
             if depth < 0.0:
                 continue

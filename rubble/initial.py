@@ -94,13 +94,13 @@ def rest(layer: RubbleLayer, place: Place, longest: float = 300.0) -> Pile:
     domain, layer.domain, layer.runner.planar = layer.domain, Domain(), True
     layer.table_of_sections.widen(len(layer.runner.body) > 0)
     yields, layer.runner.yields = layer.runner.yields, None  # the sheet lies still
-    layer.set_form_drag(20.0 * max(layer.physics.form_drag, 0.5))  # to rest sooner; the rest is the same
+    layer.set_water(20.0 * max(layer.physics.form_drag, 0.5), (0.0, 0.0))  # to rest sooner; the rest is the same
     calm = _come_to_rest(layer, place, longest)
     if layer.runner.bed < -layer.physics.depth:
         calm = _spread(layer, place, longest)
     time, layer.time, layer.runner.planar, layer.domain = layer.time, 0.0, False, domain
     layer.runner.yields = yields
-    layer.set_form_drag(layer.physics.form_drag)
+    layer.set_water(layer.physics.form_drag, layer.physics.current)
     layer.table_of_sections.widen(False)
     if calm > CALM:
         raise RuntimeError(

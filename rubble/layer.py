@@ -213,9 +213,10 @@ class RubbleLayer(Readings):
         self.breaks = self.runner.break_plates(self.store)
         self._clear()
 
-    def set_form_drag(self, coefficient: float) -> None:
-        """Another C_d for a while: initial rubble settles sooner in thick water."""
-        self.runner.water = self.runner.water._replace(form_drag=float(coefficient))
+    def set_water(self, form_drag: float, current: tuple[float, float]) -> None:
+        """Another C_d and velocity of the water for a while: initial rubble settles sooner in water thick and still."""
+        x, y = current
+        self.runner.water = self.runner.water._replace(form_drag=form_drag, current_x=x, current_y=y)
 
     def advance(self, n_substeps: int) -> None:
         """Move all plates on by a window of whole sub-steps; then count what has left."""

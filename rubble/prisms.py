@@ -23,7 +23,7 @@ from rubble.corners import bounds, first_of, go_on_from
 from rubble.gather import Scene
 from rubble.moving import aside, from_axes, own_axes, turned
 from rubble.plates import times
-from rubble.round import SURELY, Spot, deepest, is_beside, spot_at, turns_outwards, widest_between
+from rubble.round import Spot, deepest, is_beside, is_far, spot_at, turns_outwards
 from rubble.rows import STRUCTURE, Rows, set_arms, set_normal
 from rubble.slices import CORNERS
 from rubble.slots import ROUND_SLOT
@@ -84,17 +84,6 @@ def _at(prism: Prism, x: float, y: float, z: float) -> tuple[float, float, float
         o[1] + a[1] * x + b[1] * y + c[1] * z,
         o[2] + a[2] * x + b[2] * y + c[2] * z,
     )
-
-
-@compiled(nogil=True, borrows=True)
-def _is_far(body: Array, o: tuple[float, float, float], outline: Array, half: float) -> bool:
-    """Whether the body is nowhere within the reach of the prism about o, by the ball around it."""
-    reach = 0.0
-    for i in range(outline.shape[0]):
-        reach = max(reach, outline[i, 0] * outline[i, 0] + outline[i, 1] * outline[i, 1])
-    reach = (1.0 + SURELY) * np.sqrt(reach + half * half)
-    far: bool = np.hypot(o[0], o[1]) - reach > widest_between(body, o[2] - reach, o[2] + reach)
-    return far
 
 
 @compiled(nogil=True, borrows=True)
@@ -230,7 +219,7 @@ def _rows_of_all(scene: Scene, both: tuple[Rows, Rows], found: int, before: int,
         piece, start = slices.piece[s], c
         outline, k = pieces.corners[pieces.offset[piece] : pieces.offset[piece + 1]], pieces.plate[piece]
         origin = _own(scene, k, 0.0, pieces.y[piece], 0.0)
-        if _is_far(scene.body, origin, outline, 0.5 * pieces.width[piece]):
+        if is_far(scene.body, origin, outline, 0.5 * pieces.width[piece]):
             continue
         prism = _prism(scene, piece)
         features = 5 * prism.outline.shape[0] + 2 * (scene.body.shape[0] - 2)

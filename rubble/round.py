@@ -51,6 +51,17 @@ def widest_between(body: Array, low: float, high: float) -> float:
 
 
 @compiled(nogil=True, borrows=True)
+def is_far(body: Array, o: tuple[float, float, float], outline: Array, half: float) -> bool:
+    """Whether the body is nowhere within the reach of the prism about o, by the ball around it."""
+    reach = 0.0
+    for i in range(outline.shape[0]):
+        reach = max(reach, outline[i, 0] * outline[i, 0] + outline[i, 1] * outline[i, 1])
+    reach = (1.0 + SURELY) * np.sqrt(reach + half * half)
+    far: bool = np.hypot(o[0], o[1]) - reach > widest_between(body, o[2] - reach, o[2] + reach)
+    return far
+
+
+@compiled(nogil=True, borrows=True)
 def depth_at(body: Array, rho: float, z: float) -> tuple[float, float, float]:
     """How deep a point stands in the body whose closed generator is (k, 2) (r, z) [m], and the normal; -1 outside."""
     last = body.shape[0] - 1

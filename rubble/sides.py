@@ -17,6 +17,7 @@ from rubble.arrays import Array, IntArray, Record
 from rubble.compiled import compiled
 from rubble.gather import Scene
 from rubble.geometry import AreaMoments, area_moments, intersection
+from rubble.outlines import apart, box_of, boxes_apart, put_outline
 from rubble.plates import times, turn_back
 from rubble.rows import ICE, Rows, go_on, set_arms, set_way
 from rubble.slices import CORNERS, Pieces, end_along_y
@@ -96,53 +97,6 @@ def directions(rows: Rows, c: int, n: Array) -> None:
     set_way(rows.way[c, 2], n[1] * tz - n[2] * ty, n[2] * tx - n[0] * tz, n[0] * ty - n[1] * tx)
 
 
-@compiled(nogil=True, borrows=True)
-def put_outline(scene: Scene, s: int, out: Array) -> None:
-    """Corners of a slice in the plane (m, 2) [m]."""
-    r, b, p = scene.plates.rotation[scene.slices.plate[s]], scene.slices.anchor[s], scene.plates.position
-    h, k = max(np.hypot(r[0, 0], r[2, 0]), 1e-12), scene.slices.plate[s]
-    cos, sin = r[0, 0] / h, r[2, 0] / h
-    ox, _, oz = times(r, b[0], b[1], b[2])
-    for c in range(scene.slices.sides[s]):
-        x, z = scene.slices.corners[s, c, 0], scene.slices.corners[s, c, 1]
-        out[c, 0], out[c, 1] = p[k, 0] + ox + cos * x - sin * z, p[k, 2] + oz + sin * x + cos * z
-
-
-@compiled(nogil=True)
-def outline_of(scene: Scene, s: int) -> Array:
-    """The same in an array of its own."""
-    out = np.empty((scene.slices.sides[s], 2))
-    put_outline(scene, s, out)
-    return out
-
-
-@compiled(nogil=True, borrows=True)
-def apart(a: Array, b: Array) -> tuple[float, float, float]:
-    """Gap between two convex outlines along the edge normal on which it is largest, and that normal, from a to b."""
-    best, nx, nz = -np.inf, 1.0, 0.0
-    for side in range(2):
-        own, other, sign = (a, b, 1.0) if side == 0 else (b, a, -1.0)
-        for i in range(own.shape[0]):
-            j = (i + 1) % own.shape[0]
-            tx, tz = own[j, 0] - own[i, 0], own[j, 1] - own[i, 1]
-            length = np.hypot(tx, tz)
-            if length <= 0.0:
-                continue
-            ux, uz, least = tz / length, -tx / length, np.inf
-            for k in range(other.shape[0]):
-                least = min(least, ux * (other[k, 0] - own[i, 0]) + uz * (other[k, 1] - own[i, 1]))
-            if least > best:
-                best, nx, nz = least, sign * ux, sign * uz
-    return best, nx, nz
-
-
-@compiled(nogil=True, borrows=True)
-def _far(a: Array, b: Array, way: float) -> bool:
-    """Whether two boxes (lowest x and z, highest x and z) are farther apart than `_meet` brings outlines together."""
-    far: bool = max(a[0] - b[2], b[0] - a[2], a[1] - b[3], b[1] - a[3]) > way
-    return far
-
-
 @compiled(nogil=True)
 def find_sides(scene: Scene, pieces: Pieces, first: IntArray, order: IntArray, sides: Sides) -> int:
     """Pairs of slices that may meet between two sections; returns how many, more than there is room for if so.
@@ -162,14 +116,14 @@ def _pairs(
     slices, near, found = scene.slices, NEAR * scene.pitch, 0
     for s in range(slices.piece.shape[0]):
         put_outline(scene, s, outlines[s])
-        _box(outlines[s], slices.sides[s], boxes[s])
+        box_of(outlines[s], slices.sides[s], boxes[s])
     for a in range(slices.piece.shape[0]):
         i = slices.section[a] + 1
         if i + 1 >= first.shape[0] or scene.sections.y[i] - scene.sections.y[i - 1] > 1.5 * scene.pitch:
             continue
         for o in range(first[i], first[i + 1]):
             b = order[o]
-            if slices.plate[a] == slices.plate[b] or _far(boxes[a], boxes[b], 1.5 * near):
+            if slices.plate[a] == slices.plate[b] or boxes_apart(boxes[a], boxes[b], 1.5 * near):
                 continue
             both = outlines[a, : slices.sides[a]], outlines[b, : slices.sides[b]]
             gap, nx, nz = apart(both[0], both[1])
@@ -179,15 +133,6 @@ def _pairs(
             if full or _meet(scene, pieces, (a, b), both, (gap, nx, nz), sides, found):
                 found += 1
     return found
-
-
-@compiled(nogil=True, borrows=True)
-def _box(outline: Array, corners: int, box: Array) -> None:
-    """Lowest x and z, highest x and z of the first corners of an outline."""
-    for d in range(2):
-        box[d], box[2 + d] = outline[0, d], outline[0, d]
-        for c in range(1, corners):
-            box[d], box[2 + d] = min(box[d], outline[c, d]), max(box[2 + d], outline[c, d])
 
 
 @compiled(nogil=True)

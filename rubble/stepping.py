@@ -20,6 +20,7 @@ from rubble.plates import Plates, move_all
 from rubble.prisms import round_rows
 from rubble.rows import Rows, Surface, set_laws
 from rubble.sides import Sides, side_rows
+from rubble.slices import CORNERS
 from rubble.solver import solve
 from rubble.water import Hulls, Water, fill_tops, plate_forces
 
@@ -61,7 +62,7 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
     """
     plates, edges, dt, books = scene.plates, scene.edges, scene.dt, sums.books[0]
     count = plates.moved.shape[0] - 1
-    forces, lowest = np.empty((count, 3, 6)), np.empty(count)
+    forces, lowest, corners = np.empty((count, 3, 6)), np.empty(count), np.empty((CORNERS, 2))
     for k in range(n):
         books.stepping += move_all(plates, dt)
         _move_sheet(edges, dt)
@@ -78,7 +79,7 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         if contacts >= 0:
             contacts = round_rows(scene, rows, old, contacts, sums.counted[0])
         if contacts >= 0:
-            contacts = bed_rows(scene, rows, old, contacts, sums.counted[0], cut and not window.planar)
+            contacts = bed_rows(scene, (rows, old), contacts, sums.counted[0], cut and not window.planar, corners)
         found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
         if found < 0:
             return NO_ROOM

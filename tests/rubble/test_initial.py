@@ -81,6 +81,15 @@ def test_the_same_seed_gives_the_same_pile_and_another_seed_another():
     assert runs[0] == runs[1] != runs[2]
 
 
+def test_a_pile_settles_in_still_water_and_then_feels_the_current():
+    """The water that flows would push the pile while it settles; afterwards it drags on its blocks."""
+    (still, _), (flows, _) = (pile(300.0, (0,), 7, physics={"current": (v, 0.0)}) for v in (0.0, 0.3))
+    assert still.table().position.tobytes() == flows.table().position.tobytes()
+    for layer in (still, flows):
+        layer.advance(1)
+    assert flows.table().velocity[:, 0].max() > still.table().velocity[:, 0].max() + 1e-6
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("mu", [0.1, 0.4, "rate-dependent"])
 def test_the_basins_3000_m3_lift_with_4_7_mn(mu):
