@@ -16,16 +16,17 @@ from rubble.compiled import compiled
 from rubble.edges import locate
 from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
-from rubble.outlines import apart, outline_of
+from rubble.outlines import apart, box_of, boxes_apart, put_outline
 from rubble.plates import times, turn_back
 from rubble.rows import SHEET, Rows, go_on, set_arms
 from rubble.sides import NEAR, directions
-from rubble.slices import Pieces, end_along_y
+from rubble.slices import CORNERS, Pieces, end_along_y
 from rubble.slots import SHEET_SLOT
 
 BANK = -2  #: marks a row of a plate and a side of the sheet
 #: overlap as seen along y, in thicknesses, up to which a plate lies over, under or before the sheet, and not beside it
 ABOVE = 0.05
+Room = tuple[Array, Array, Array]  #: two outlines, (CORNERS, 2) and (4, 2), and the boxes round them (2, 4)
 
 
 class Banks(NamedTuple):
@@ -90,6 +91,13 @@ def _earlier(p: Record, s: int, e: int) -> bool:
 @compiled(nogil=True)
 def find_banks(scene: Scene, pieces: Pieces, thickness: float, banks: Banks) -> int:
     """Slices that may meet a side of the sheet; returns how many, more than there is room for if so."""
+    room = np.empty((CORNERS, 2)), np.empty((4, 2)), np.empty((2, 4))
+    return int(_find(scene, pieces, thickness, banks, room))
+
+
+@compiled(nogil=True, borrows=True)
+def _find(scene: Scene, pieces: Pieces, thickness: float, banks: Banks, room: Room) -> int:
+    """The same, with room for two outlines and the boxes round them."""
     slices, edges, found = scene.slices, scene.edges, 0
     for s in range(slices.piece.shape[0]):
         for side in range(2):
@@ -100,7 +108,8 @@ def find_banks(scene: Scene, pieces: Pieces, thickness: float, banks: Banks) -> 
             apart = abs(scene.sections.y[slices.section[s]] - scene.sections.y[e])
             if apart > 1.5 * scene.pitch or _cut(scene, s, e):
                 continue
-            if found >= banks.area.shape[0] or _meet(scene, pieces, (s, e, float(sign)), thickness, banks, found):
+            full = found >= banks.area.shape[0]
+            if full or _meet(scene, pieces, (s, e, float(sign)), thickness, banks, found, room):
                 found += 1
     return found
 
@@ -116,22 +125,39 @@ def _cut(scene: Scene, s: int, e: int) -> bool:
 
 
 @compiled(nogil=True)
-def _meet(scene: Scene, pieces: Pieces, which: tuple[int, int, float], thickness: float, banks: Banks, k: int) -> bool:
+def _common(own: Array, other: Array) -> tuple[float, float, float, float]:
+    """Area of what two outlines have in common, its middle, and how deep they stand in each other."""
+    common = intersection(own.copy(), other)
+    if common.shape[0] < 3:
+        return 0.0, 0.0, 0.0, 0.0
+    m, (gap, _, _) = area_moments(common), apart(own, other)
+    return m.area, m.x, m.z, -gap
+
+
+@compiled(nogil=True, borrows=True)
+def _meet(
+    scene: Scene,
+    pieces: Pieces,
+    which: tuple[int, int, float],
+    thickness: float,
+    banks: Banks,
+    k: int,
+    room: Room,
+) -> bool:
     """The contact of a slice with the sheet of the next section as bank k; says whether there may be one."""
-    s, e, sign = which
+    (s, e, sign), (own, quad, boxes), corners = which, room, scene.slices.sides[which[0]]
     nodes, first, end = scene.edges.nodes, scene.edges.offset[e], scene.edges.offset[e + 1]
-    own, area, at_x, at_z, deepest = outline_of(scene, s), 0.0, 0.0, 0.0, 0.0
-    quad, half = np.empty((4, 2)), 0.5 * thickness
+    area, at_x, at_z, deepest, half = 0.0, 0.0, 0.0, 0.0, 0.5 * thickness
+    put_outline(scene, s, own)
+    box_of(own, corners, boxes[0])
     for i in range(first, end - 1):
         a, b = nodes[i + 1], nodes[i]
         quad[0, 0], quad[0, 1], quad[1, 0], quad[1, 1] = a.x, a.z - half, b.x, b.z - half
         quad[2, 0], quad[2, 1], quad[3, 0], quad[3, 1] = b.x, b.z + half, a.x, a.z + half
-        common = intersection(own, quad)
-        if common.shape[0] >= 3:
-            m = area_moments(common)
-            area, at_x, at_z = area + m.area, at_x + m.area * m.x, at_z + m.area * m.z
-            gap, _, _ = apart(own, quad)
-            deepest = max(deepest, -gap)
+        box_of(quad, 4, boxes[1])
+        if not boxes_apart(boxes[0], boxes[1], 0.0):
+            part, x, z, depth = _common(own[:corners], quad)
+            area, at_x, at_z, deepest = area + part, at_x + part * x, at_z + part * z, max(deepest, depth)
     if area <= 0.0 or deepest < ABOVE * thickness:
         return False
     x, z = at_x / area, at_z / area

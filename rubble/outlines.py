@@ -22,14 +22,6 @@ def put_outline(scene: Scene, s: int, out: Array) -> None:
         out[c, 0], out[c, 1] = p[k, 0] + ox + cos * x - sin * z, p[k, 2] + oz + sin * x + cos * z
 
 
-@compiled(nogil=True)
-def outline_of(scene: Scene, s: int) -> Array:
-    """The same in an array of its own."""
-    out = np.empty((scene.slices.sides[s], 2))
-    put_outline(scene, s, out)
-    return out
-
-
 @compiled(nogil=True, borrows=True)
 def apart(a: Array, b: Array) -> tuple[float, float, float]:
     """Gap between two convex outlines along the edge normal on which it is largest, and that normal, from a to b."""
