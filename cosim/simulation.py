@@ -244,5 +244,5 @@ def _was_touched(result: RunResult) -> None:
     if result.loads and not any(load.any() for _, load in result.loads):
         raise SimulationError(
             f"the structure was never touched in {result.t_ns / NS:g} s; the ice passes it: see structure.top, "
-            "structure.toe_depth and sheet.axis_from_side, or lengthen scenario.duration"
+            "structure.toe_depth and sheet.axis_from_side, or has not come yet (sheet.gap): lengthen scenario.duration"
         )

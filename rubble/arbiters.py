@@ -19,7 +19,7 @@ from rubble.pointers import number, pointer, set_integer
 
 #: pairs counted in a sub-step, pairs that fit into the list, address of the list
 LIST = record(integers=("count", "room", "address"))
-COUNT, ROOM, ADDRESS = 0, 8, 16  #: bytes from its start to each of them
+COUNT, ROOM, ADDRESS = (8 * (LIST.names or ()).index(name) for name in ("count", "room", "address"))  #: bytes to them
 
 
 @callback("void(voidptr, voidptr, voidptr)")

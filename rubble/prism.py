@@ -114,7 +114,9 @@ def _checked_strips(polygon: Array, cuts: Array, widths: Array) -> tuple[Array, 
     """Strips as arrays, the outer cuts moved to the block's ends so that no ice is left out."""
     cuts, widths = np.array(cuts, dtype=np.float64), np.array(widths, dtype=np.float64)
     if len(cuts) != len(widths) + 1 or (np.diff(cuts) <= 0).any() or not (widths > 0).all():
-        raise ValueError(f"strips with cuts {cuts} and widths {widths}; give ascending cuts, one more than widths > 0")
+        raise ValueError(
+            f"{len(widths)} strips with cuts {cuts.tolist()}; give ascending cuts, one more than widths, and widths > 0"
+        )
     lo, hi = polygon[:, 0].min(), polygon[:, 0].max()
     keep = (cuts[1:] > lo) & (cuts[:-1] < hi)
     if not keep.any():

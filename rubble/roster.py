@@ -14,6 +14,7 @@ import numpy as np
 from rubble.arrays import Array
 from rubble.layer import RubbleLayer
 from rubble.piece import Piece, Plate, Start, prism_of
+from rubble.prism import Prism
 
 
 @dataclass(frozen=True)
@@ -46,15 +47,29 @@ def roster(layer: RubbleLayer) -> list[PlateState]:
 
 
 def enter(layer: RubbleLayer, plates: Sequence[PlateState]) -> None:
-    """Puts plates into a layer, of ice of its density; each is a fragment of its own.
-
-    ValueError if an outline is not convex or a prism has no volume.
-    """
-    for fragment, state in enumerate(plates):
-        prisms = [prism_of(p.outline, p.y, p.cuts, p.widths, layer.physics.rho_i) for p in state.prisms]
+    """Puts plates into a layer, of ice of its density; each is a fragment of its own. ValueError as `prisms_of`."""
+    every = prisms_of(plates, layer.physics.rho_i)
+    for fragment, (state, prisms) in enumerate(zip(plates, every, strict=True)):
         start = Start(state.position, state.quaternion, state.velocity, state.omega)
         plate = layer.block(layer.add_plate(prisms, start, fragment=fragment, flooded=state.flooded))
         plate.aligned, plate.sliding = state.aligned, state.sliding
+
+
+def prisms_of(plates: Sequence[PlateState], density: float) -> list[list[tuple[Prism, Array]]]:
+    """Prisms of plates, each with its place (3,).
+
+    ValueError, which names plate and prism, if an outline is not convex or strips do not fit it.
+    """
+    every: list[list[tuple[Prism, Array]]] = []
+    for k, state in enumerate(plates):
+        own: list[tuple[Prism, Array]] = []
+        for i, p in enumerate(state.prisms):
+            try:
+                own.append(prism_of(p.outline, p.y, p.cuts, p.widths, density))
+            except ValueError as error:
+                raise ValueError(f"plates.{k}.prisms.{i}: {error}") from error
+        every.append(own)
+    return every
 
 
 def _state_of(plate: Plate) -> PlateState:

@@ -7,6 +7,8 @@ a rigid plate for each part that hangs together: halves and pieces between the n
 
 from __future__ import annotations
 
+from itertools import pairwise
+from math import ceil
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -20,7 +22,8 @@ from coupling.rubble_port import RubblePort
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
 from lattice.fragments import front_rows
-from rubble.roster import PlateState, PrismState, enter, roster
+from rubble.geometry import clip
+from rubble.roster import PlateState, PrismState, enter, prisms_of, roster
 
 FORMAT: Literal["brash pieces 1"] = "brash pieces 1"
 SAME = 1e-6  #: relative difference of thickness and density to which ice is the same
@@ -98,36 +101,42 @@ def checked(path: Path, scenario: Scenario) -> Pieces:
     for number, plate in enumerate(found.plates):
         if abs(float(np.linalg.norm(plate.quaternion)) - 1.0) > SAME:
             raise InputError(f"{path}: plates.{number}.quaternion has not the length 1; it is the turn of the plate")
+    try:
+        prisms_of(found.states(), ice.density)
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
     return found
 
 
 def put(path: Path, scenario: Scenario, sheet: SheetPort, rubble: RubblePort) -> None:
     """The rubble has the pieces of a file; InputError where the floe would lie on them."""
-    found = checked(path, scenario)
-    try:
-        enter(rubble.layer, found.states())
-    except ValueError as error:
-        raise InputError(f"{path}: {error}") from error
+    enter(rubble.layer, checked(path, scenario).states())
     missing = lies_in_floe(sheet, rubble)
     if missing > 0.0:
         gap = scenario.sheet.gap
+        least = ceil(100.0 * (gap + missing)) / 100.0
         raise InputError(
-            f"{path}: a piece reaches {missing:.3g} m into the floe as it begins; give sheet.gap of "
-            f"{gap + missing:.3g} m or more (it is {gap:g} m)"
+            f"{path}: a piece reaches {missing:.3g} m into the floe as it begins; give sheet.gap of {least:.2f} m or "
+            f"more (it is {gap:g} m)"
         )
 
 
 def lies_in_floe(sheet: SheetPort, rubble: RubblePort) -> float:
     """How far pieces beside the floe, neither under nor on it, reach behind its front [m]; 0 if none does."""
-    floe, corner = sheet.sheet, rubble.layer.corners
-    grid, ice = floe.grid, floe.ice
-    row = front_rows(grid, floe.present)
+    grid, ice, layer = sheet.sheet.grid, sheet.sheet.ice, rubble.layer
+    row = front_rows(grid, sheet.sheet.present)
     front = grid.x0 + row * grid.d + np.where(row == grid.nx - 1, 0.0, 0.5 * grid.d)
-    column = np.rint((corner[:, 1] - grid.y0) / grid.d).astype(np.int64)
-    top, room = ice.freeboard, FLAT * ice.h
-    beside = (corner[:, 2] < top - room) & (corner[:, 2] > top - ice.h + room) & (column >= 0) & (column < grid.ny)
-    behind = np.where(row[column[beside]] >= 0, front[column[beside]] - corner[beside, 0], 0.0)
-    return float(behind.max(initial=0.0))
+    front[row < 0] = -np.inf
+    top, bottom = ice.freeboard - FLAT * ice.h, ice.freeboard - (1.0 - FLAT) * ice.h
+    sides, worst = layer.corners.reshape(2, -1, 3), 0.0
+    for first, end in pairwise(layer.store.tables.pieces.offset):
+        y = (sides[:, first:end, 1] - grid.y0) / grid.d  # columns are half a cell wide to either side
+        columns = slice(max(int(np.ceil(y.min() - 0.5)), 0), max(int(np.floor(y.max() + 0.5)) + 1, 0))
+        for side in sides[:, first:end, ::2]:
+            inside = clip(clip(np.ascontiguousarray(side), 0.0, 1.0, top), 0.0, -1.0, -bottom)
+            if len(inside):
+                worst = max(worst, float((front[columns] - inside[:, 0].min()).max(initial=0.0)))
+    return worst
 
 
 def write(scheduler: Scheduler, scenario: Scenario, path: Path) -> None:

@@ -87,7 +87,7 @@ def froude_copy(scenario: Scenario, factor: Fraction) -> Copy:
     motion = scenario.model.structure.motion
     if motion is not None and motion.file:
         told.append(f"structure.motion.file = {motion.file}: what it holds is in SI and is not scaled")
-    told += [f"{key} = {name}: what it holds is in metres and is not scaled" for key, name in scenario.named_files]
+    told += [f"{key} = {name}: what it holds is in SI and is not scaled" for key, name in scenario.named_files]
     head = f"# Froude copy of {scenario.name}: lengths by {factor}, times by its root, masses by its cube.\n\n"
     return Copy(head + to_toml(table), tuple(done), tuple(told))
 

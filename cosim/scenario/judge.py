@@ -122,9 +122,12 @@ def floe(m: Any) -> Doubts:
 
 def duration(m: Any) -> Doubts:
     """The way that the ice drifts against pieces and floe."""
-    way, piece = drift_in_run(m), breaking_length(m)
+    way, piece = max(drift_in_run(m) - m.sheet.gap, 0.0), breaking_length(m)
     if way < PIECES * piece:
-        few = f"the ice drifts {way:.3g} m of a breaking length of {piece:.3g} m: at most the first break is seen"
+        behind = f" behind sheet.gap of {m.sheet.gap:g} m" if m.sheet.gap else ""
+        few = (
+            f"the ice drifts {way:.3g} m{behind} of a breaking length of {piece:.3g} m: at most the first break is seen"
+        )
         yield Doubt("scenario.duration", few)
     if way > 0.8 * m.sheet.length:
         yield Doubt("scenario.duration", f"the ice drifts {way:.3g} m, and the floe is {m.sheet.length:g} m long")

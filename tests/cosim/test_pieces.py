@@ -82,7 +82,30 @@ def test_a_floe_does_not_begin_on_pieces(first):
         build(follows(path, "sheet.gap='1 m'"))
     assert "\n" not in str(error.value)
     asked = float(str(error.value).split("sheet.gap of ")[1].split(" m")[0])
-    assert build(follows(path, f"sheet.gap='{asked + 0.01:.3f} m'")).rubble.layer.mass > 0.0
+    assert build(follows(path, f"sheet.gap='{asked:.2f} m'")).rubble.layer.mass > 0.0
+
+
+@pytest.mark.parametrize(("sunk", "tilt"), [(0.0, 0.0), (0.05, 0.0), (0.0, 0.02), (0.8, 0.9)])
+def test_flat_and_standing_ice_in_the_floe_is_seen(first, tmp_path, sunk, tilt):
+    """Ice that floats level with the floe has corners at its top and bottom only; ice under it lies in nothing."""
+    data = json.loads(first[0].read_text())
+    plate, (x, y, z) = data["plates"][0], (-14.0, 0.3, -0.5 * 0.5 + 0.5 * (1.0 - 900.0 / 1025.0))
+    outline = [[-2.0, -0.25], [2.0, -0.25], [2.0, 0.25], [-2.0, 0.25]]
+    plate["prisms"] = [{"outline": outline, "y": 0.0, "cuts": [-2.0, 2.0], "widths": [1.5]}]
+    half = 0.5 * tilt
+    plate |= {"position": [x, y, z - 0.5 * sunk], "quaternion": [np.cos(half), 0.0, -np.sin(half), 0.0]}
+    data["plates"] = [plate]
+    path = tmp_path / "flat.json"
+    path.write_text(json.dumps(data))
+    front = build(follows(path)).sheet.sheet.grid
+    edge = front.x0 + (front.nx - 1) * front.d + 60.0  # where it would touch
+    with pytest.raises(InputError, match=r"sheet\.gap") as error:
+        build(follows(path, "sheet.gap='0.1 m'"))
+    asked = float(str(error.value).split("sheet.gap of ")[1].split(" m")[0])
+    assert asked == pytest.approx(edge - (x - 2.0 * np.cos(tilt)), abs=1.2 if tilt > 0.1 else 0.02)
+    plate["position"][2] -= 2.0
+    path.write_text(json.dumps(data))
+    assert build(follows(path, "sheet.gap='0 m'")).rubble.layer.mass > 0.0
 
 
 def test_a_gap_is_a_delay():
@@ -122,7 +145,11 @@ def changed(path, to, **values):
         ({"plates__0__position": [1.0, None, 0.0]}, r"plates\.0\.position\.1"),
         ({"plates__0__mass": 1.0}, r"plates\.0\.mass"),
         ({"plates__0__prisms": []}, r"plates\.0\.prisms"),
-        ({"plates__0__prisms__0__outline": [[0, 0], [1, 0], [0.4, 0.2], [0, 1]]}, "not convex"),
+        (
+            {"plates__1__prisms__0__outline": [[0, 0], [1, 0], [0.4, 0.2], [0, 1]]},
+            r"plates\.1\.prisms\.0: .* not convex",
+        ),
+        ({"plates__1__prisms__0__cuts": [1.0, 0.0]}, r"plates\.1\.prisms\.0: 1 strips with cuts"),
     ],
 )
 def test_a_wrong_file_is_one_line(first, tmp_path, values, says):
@@ -138,6 +165,7 @@ def test_a_wrong_file_is_one_line(first, tmp_path, values, says):
     [
         (["rubble.initial_volume='20 m^3'"], "rubble.pieces.*give one of the two"),
         (["rubble.enabled=false"], "rubble.pieces.*remove one of the two"),
+        (["rubble.pieces=''", "rubble.initial_volume='20 m^3'"], "sheet.gap.*give one of the two"),
     ],
 )
 def test_rubble_comes_from_one_place(first, overrides, says):

@@ -121,12 +121,12 @@ def ice_can_slide(m: Any) -> Faults:
 
 
 def rubble_comes_from_one_place(m: Any) -> Faults:
-    """Pieces of another run are there in place of a heap."""
-    if not m.rubble.pieces:
-        return
-    if m.rubble.initial_volume > 0.0:
+    """Pieces of another run are there in place of a heap, and a heap lies under a floe that touches."""
+    if m.rubble.pieces and m.rubble.initial_volume > 0.0:
         yield fault("rubble.pieces", "are there besides an initial_volume; give one of the two")
-    if not m.rubble.enabled:
+    elif m.sheet.gap > 0.0 and m.rubble.initial_volume > 0.0:
+        yield fault("sheet.gap", "a rubble.initial_volume settles under a floe that touches; give one of the two")
+    if m.rubble.pieces and not m.rubble.enabled:
         yield fault("rubble.pieces", "needs rubble.enabled = true; remove one of the two")
 
 
