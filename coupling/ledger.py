@@ -82,8 +82,12 @@ class Ledger:
         return books | self.energy.close(t_ns, sheet_energy, rubble_energy)
 
     def _sheet(self, energy: Mapping[str, float]) -> float:
-        """Residual of the sheet's energy relative to the largest work that was exchanged so far."""
-        self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]))
+        """Residual of the sheet's energy relative to the largest work that was exchanged so far.
+
+        In the frame that drifts, in which the sheet keeps its books, what it pushes along does no work: so that of the
+        drift counts too.
+        """
+        self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]), self.energy.work)
         self.sheet_energy_residual = abs(energy["sheet_energy_residual"]) / max(self._work, NOTHING * self.energy.floor)
         return self.sheet_energy_residual
 

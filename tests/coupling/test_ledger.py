@@ -9,7 +9,7 @@ from coupling.ledger import Ledger
 class NoBooks:
     """An energy balance of the whole system that is always closed."""
 
-    floor = 1e5
+    floor, work = 1e5, 0.0
 
     def close(self, t_ns, sheet, rubble):
         return {}
@@ -76,6 +76,18 @@ def test_the_sheet_s_energy_is_measured_by_the_largest_work(work):
     assert book.sheet_energy_residual == pytest.approx(49.0 / 5e4, rel=1e-12)
     with pytest.raises(SimulationError, match="energy of the sheet"):
         close(book, energy=energy(-51.0, **work))
+
+
+def test_what_the_sheet_pushes_along_counts_by_the_work_of_the_drift():
+    """In the frame of the sheet it does no work; without the drift's the books of a floe in open water would not close."""
+    book = ledger()
+    with pytest.raises(SimulationError, match="energy of the sheet"):
+        close(book, energy=energy(26.0, rubble=2.5e4))
+    book.energy.work = 7e6
+    close(book, energy=energy(26.0, rubble=2.5e4))
+    assert book.sheet_energy_residual == pytest.approx(26.0 / 7e6, rel=1e-12)
+    with pytest.raises(SimulationError, match="energy of the sheet"):
+        close(book, energy=energy(7.1e3, rubble=2.5e4))
 
 
 def test_work_below_a_share_of_what_the_floe_brings_along_counts_as_that_share():
