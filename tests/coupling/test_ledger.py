@@ -79,7 +79,7 @@ def test_the_sheet_s_energy_is_measured_by_the_largest_work(work):
 
 
 def test_what_the_sheet_pushes_along_counts_by_the_work_of_the_drift():
-    """In the frame of the sheet it does no work; without the drift's the books of a floe in open water would not close."""
+    """In the frame of the sheet it does no work, and the books of a floe that pushes ice along would not close."""
     book = ledger()
     with pytest.raises(SimulationError, match="energy of the sheet"):
         close(book, energy=energy(26.0, rubble=2.5e4))
