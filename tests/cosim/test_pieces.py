@@ -15,6 +15,7 @@ from rubble.roster import roster
 #: breaks within two seconds; a coarse sheet
 CASE = "first_cone"
 SMALL = ("sheet.nodes=[25,19]", "sheet.length='36 m'", "sheet.width='27 m'")
+CLOSING = ("fracture.cracks=closing", "fracture.layer_strength='400 kPa'")
 BACK = "60 m"  #: gap over which the second floe stands clear of all pieces
 
 
@@ -46,6 +47,21 @@ def test_what_is_left_of_the_sheet_is_among_the_pieces(first):
     assert len(read(path).plates) > kept["broken"]
     layer = build(follows(path)).rubble.layer
     assert 0.99 * kept["mass"] < layer.mass <= (1.0 + 1e-12) * kept["mass"]
+
+
+def test_cracks_that_close_hold_what_is_left_together(tmp_path):
+    """Cells that have cracked join their nodes until they are through and open: a floe is no heap of single nodes."""
+    scenario = load_scenario(CASE, [*SMALL, *CLOSING, "scenario.duration='1.5 s'"])
+    kept = {}
+
+    def at_end(scheduler):
+        kept["begun"] = int((~scheduler.sheet.sheet.intact).sum())
+        kept["rubble"] = len(scheduler.rubble.layer.blocks)
+        write(scheduler, scenario, tmp_path / "p.json")
+
+    run_scenario(scenario, at_end=at_end)
+    assert kept["begun"] > 20
+    assert len(read(tmp_path / "p.json").plates) <= kept["rubble"] + 3
 
 
 def test_pieces_come_back_where_and_as_they_moved(first):
