@@ -84,10 +84,12 @@ class Ledger:
     def _sheet(self, energy: Mapping[str, float]) -> float:
         """Residual of the sheet's energy relative to the largest work that was exchanged so far.
 
-        In the frame that drifts, in which the sheet keeps its books, what it pushes along does no work: so that of the
-        drift counts too.
+        In the frame that drifts, in which the sheet keeps its books, what it pushes along does no work, and ice that it
+        runs into little: so the work of the drift counts too, and the kinetic energy that it has given or got.
         """
-        self._work = max(self._work, abs(energy["contact_work"]), abs(energy["rubble_work"]), self.energy.work)
+        own = abs(energy["contact_work"]), abs(energy["rubble_work"])
+        moved = abs(energy.get("sheet_kinetic", self.energy.floor) - self.energy.floor)
+        self._work = max(self._work, *own, self.energy.work, moved)
         self.sheet_energy_residual = abs(energy["sheet_energy_residual"]) / max(self._work, NOTHING * self.energy.floor)
         return self.sheet_energy_residual
 

@@ -90,6 +90,17 @@ def test_what_the_sheet_pushes_along_counts_by_the_work_of_the_drift():
         close(book, energy=energy(7.1e3, rubble=2.5e4))
 
 
+def test_what_the_sheet_runs_into_counts_by_the_kinetic_energy_that_it_takes():
+    """4 J are missing where ice takes 10 kJ of the floe's motion, and 400 J of work in its frame."""
+    book, kinetic = ledger(), NoBooks.floor - 1e4
+    with pytest.raises(SimulationError, match="energy of the sheet"):
+        close(ledger(), energy=energy(4.4, rubble=400.0))
+    close(book, energy=energy(4.4, rubble=400.0) | {"sheet_kinetic": kinetic})
+    assert book.sheet_energy_residual == pytest.approx(4.4e-4, rel=1e-12)
+    with pytest.raises(SimulationError, match="energy of the sheet"):
+        close(ledger(), energy=energy(11.0, rubble=400.0) | {"sheet_kinetic": kinetic})
+
+
 def test_work_below_a_share_of_what_the_floe_brings_along_counts_as_that_share():
     book = ledger()
     close(book, energy=energy(9e-4))
