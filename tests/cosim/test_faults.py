@@ -208,6 +208,7 @@ def test_every_rule_can_be_broken(tmp_path):
         "fields_are_drawn_or_read": ["ice.strength_field={}"],
         "card_marches_open_cracks": ["fracture.device='cuda'"],
         "motion_has_its_keys": ["structure.motion.kind='modal'"],
+        "rubble_comes_from_one_place": ["sheet.gap='5 m'", "rubble.initial_volume='20 m^3'"],
         "something_moves": ["drift.velocity='0 m/s'"],
     }
     assert set(changes) == {rule.__name__ for rule in RULES}

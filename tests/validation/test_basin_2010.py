@@ -72,8 +72,8 @@ def budget_is_kept(loads, budgets, axis, force, flipped=None):
 
 
 def carriers(budget):
-    """Terms of every run, then those of the water on flooded tops where they flood."""
-    return (*TERMS, *(name for name in NAMES if f"fz_{name}" in budget))
+    """Terms of every run, then those of the water on flooded tops where they flood, and of water that flows."""
+    return (*TERMS, *(name for name in (*NAMES, "current") if f"fz_{name}" in budget))
 
 
 def check_balances(ledger, seen, initial, force=CLOSING):
