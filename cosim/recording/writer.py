@@ -1,7 +1,7 @@
 """Recordings written: a run becomes an MCAP file.
 
-Scenario, reference and run data are written first, and the file is flushed after every `CHUNK_NS` of simulated time, so
-that a killed run leaves a file that lacks no more than that and the window under way. All is under checksums, see
+Scenario, reference and run data are written first, and the file is flushed after the first window and after every
+`CHUNK_NS` of simulated time, so that a killed run leaves a file that lacks no more than that and the window under way. All is under checksums, see
 `cosim.recording.records`. The same scenario gives the same bits: stamps are simulated time, and nothing of the machine
 (clock, path, user) is written.
 """
@@ -101,7 +101,7 @@ class Recorder:
             self._write(event.t_ns, {When.EVENT}, event)
         if self._is_recorded(frame):
             self._write(frame.t_ns, {When.PICTURE, When.VIEW} if self._with_view(frame) else {When.PICTURE}, frame)
-        if frame.t_ns // CHUNK_NS > self.recorded_ns // CHUNK_NS:
+        if self.recorded_ns == 0 or frame.t_ns // CHUNK_NS > self.recorded_ns // CHUNK_NS:
             self._do(self._writer.flush)
         self.recorded_ns = frame.t_ns
 
