@@ -1,9 +1,9 @@
 """Recordings written: a run becomes an MCAP file.
 
 Scenario, reference and run data are written first, and the file is flushed after the first window and after every
-`CHUNK_NS` of simulated time, so that a killed run leaves a file that lacks no more than that and the window under way. All is under checksums, see
-`cosim.recording.records`. The same scenario gives the same bits: stamps are simulated time, and nothing of the machine
-(clock, path, user) is written.
+`CHUNK_NS` of simulated time, so that a killed run leaves a file that lacks no more than that and the window under way.
+All is under checksums, see `cosim.recording.records`. The same scenario gives the same bits: stamps are simulated time,
+and nothing of the machine (clock, path, user) is written.
 """
 
 from __future__ import annotations
