@@ -37,7 +37,7 @@ from lattice.cracks.make import Measured, cracking_sheet
 from lattice.criteria.table import chosen
 from lattice.explicit_sheet import ExplicitSheet
 from lattice.floe import Floe
-from lattice.fragments import front_rows
+from lattice.fragments import front_x
 from lattice.grid import Grid
 from lattice.ice import BeamTest, Ice
 from lattice.implicit.engine import Engine
@@ -177,12 +177,10 @@ def _varied(scenario: Scenario, grid: Grid) -> Varied | None:
 
 def room_before(structure: Structure, ice: Ice, grid: Grid, gone: BoolArray) -> float:
     """How far a floe without the nodes that are ``gone`` (nodes,) can come forward until it touches [m]."""
-    row = front_rows(grid, ~gone)
-    column = np.flatnonzero(row >= 0)
-    row = row[column]
-    lead = np.where(row == grid.nx - 1, 0.0, 0.5 * grid.d)
+    front = front_x(grid, ~gone)
+    column = np.flatnonzero(np.isfinite(front))
     z = ice.freeboard if structure.faces_down else ice.freeboard - ice.h
-    between = structure.face_x(grid.y0 + column * grid.d, z) - (grid.x0 + row * grid.d + lead)
+    between = structure.face_x(grid.y0 + column * grid.d, z) - front[column]
     if not np.isfinite(between).any():
         raise InputError("sheet.broken: no ice is left before the structure; leave some of it")
     return float(np.nanmin(between))

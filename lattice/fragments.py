@@ -57,3 +57,10 @@ def front_rows(grid: Grid, present: BoolArray) -> IntArray:
     p = present.reshape(grid.nx, grid.ny)
     front: Array = grid.nx - 1 - np.argmax(p[::-1], axis=0)
     return np.where(p.any(axis=0), front, -1).astype(np.int64)
+
+
+def front_x(grid: Grid, present: BoolArray) -> Array:
+    """Where the ice of the foremost node of each column ends, -inf where a column has none, (ny,) [m]."""
+    row = front_rows(grid, present)
+    end = grid.x0 + row * grid.d + np.where(row == grid.nx - 1, 0.0, 0.5 * grid.d)
+    return np.where(row >= 0, end, -np.inf)

@@ -41,26 +41,20 @@ class PlateState:
     prisms: tuple[PrismState, ...]
 
 
+Entry = tuple[PlateState, list[tuple[Prism, Array]]]  #: a plate, and its prisms with their places (3,) in its axes
+
+
 def roster(layer: RubbleLayer) -> list[PlateState]:
     """All plates that are followed, in the order of their numbers."""
     return [_state_of(p) for p in layer.blocks]
 
 
-def enter(layer: RubbleLayer, plates: Sequence[PlateState]) -> None:
-    """Puts plates into a layer, of ice of its density; each is a fragment of its own. ValueError as `prisms_of`."""
-    every = prisms_of(plates, layer.physics.rho_i)
-    for fragment, (state, prisms) in enumerate(zip(plates, every, strict=True)):
-        start = Start(state.position, state.quaternion, state.velocity, state.omega)
-        plate = layer.block(layer.add_plate(prisms, start, fragment=fragment, flooded=state.flooded))
-        plate.aligned, plate.sliding = state.aligned, state.sliding
-
-
-def prisms_of(plates: Sequence[PlateState], density: float) -> list[list[tuple[Prism, Array]]]:
-    """Prisms of plates, each with its place (3,).
+def entries(plates: Sequence[PlateState], density: float) -> list[Entry]:
+    """Plates with their prisms of ice of this density [kg/m^3], each at its place (3,).
 
     ValueError, which names plate and prism, if an outline is not convex or strips do not fit it.
     """
-    every: list[list[tuple[Prism, Array]]] = []
+    found: list[Entry] = []
     for k, state in enumerate(plates):
         own: list[tuple[Prism, Array]] = []
         for i, p in enumerate(state.prisms):
@@ -68,8 +62,19 @@ def prisms_of(plates: Sequence[PlateState], density: float) -> list[list[tuple[P
                 own.append(prism_of(p.outline, p.y, p.cuts, p.widths, density))
             except ValueError as error:
                 raise ValueError(f"plates.{k}.prisms.{i}: {error}") from error
-        every.append(own)
-    return every
+        found.append((state, own))
+    return found
+
+
+def enter(layer: RubbleLayer, plates: Sequence[Entry]) -> None:
+    """Puts plates into a layer; each is a fragment of its own."""
+    made = []
+    for fragment, (state, prisms) in enumerate(plates):
+        start = Start(state.position, state.quaternion, state.velocity, state.omega)
+        plate = layer.store.make(fragment, prisms, start, state.flooded)
+        plate.aligned, plate.sliding = state.aligned, state.sliding
+        made.append(plate)
+    layer.store.add(*made)
 
 
 def _state_of(plate: Plate) -> PlateState:

@@ -47,16 +47,13 @@ class RunFiles:
         """What is said of the scenario here."""
         return [] if self.checkpoint_every is None else [f"recording.checkpoint_every={self.checkpoint_every}"]
 
-    def check(self, inputs: Sequence[Path]) -> None:
+    def check(self, scenario: Scenario) -> None:
         """Before anything is simulated."""
         if self.follow and self.output is None:
             raise InputError("--follow shows what is recorded; name a recording with -o run.mcap")
         if self.output is not None:
-            writable(self.output, ".mcap", inputs, self.force)
-        if self.ice is not None:
-            writable(self.ice, _kind(self.ice), inputs, self.force)
-        if self.pieces is not None:
-            writable(self.pieces, ".pieces", inputs, self.force)
+            writable(self.output, ".mcap", scenario.inputs, self.force)
+        _check_ends(scenario, self.ice, self.pieces, scenario.inputs, self.force)
 
 
 @talking
@@ -89,8 +86,7 @@ def run(
     for line in (*fact_lines(about["facts"]), about["cost_text"]):
         talk.detail(line)
     observers: list[Observer] = [ProgressBar(talk)]
-    files.check(loaded.inputs)
-    _need_rubble(files.pieces, loaded)
+    files.check(loaded)
     if dry_run:
         _dry_run(loaded, about, as_json)
         return
@@ -118,10 +114,7 @@ def resume(
     from cosim.watched import simulate
 
     run = interrupted(recording)
-    _need_rubble(pieces, run.scenario)
-    for path, kind in ((ice, _kind(ice)), (pieces, ".pieces")):
-        if path is not None:
-            writable(path, kind, [recording, *run.scenario.inputs])
+    _check_ends(run.scenario, ice, pieces, [recording, *run.scenario.inputs])
     for text in run.warnings:
         talk.warn(text)
     talk.detail(f"goes on at {run.since.t_ns / 1e9:g} s")
@@ -139,6 +132,19 @@ def _tell(result: dict[str, Any], recording: Path | None, as_json: bool, talk: T
     print_json(result) if as_json else print_run(result, talk.level)
 
 
+def _check_ends(
+    scenario: Scenario, ice: Path | None, pieces: Path | None, inputs: Sequence[Path], force: bool = False
+) -> None:
+    """What `_at_end` writes, before anything is simulated."""
+    if ice is not None:
+        writable(ice, _kind(ice), inputs, force)
+    if pieces is not None:
+        if not scenario.rubble.enabled:
+            text = "--pieces writes the rubble of a run, and rubble.enabled is false; leave one of the two out"
+            raise InputError(text)
+        writable(pieces, ".pieces", inputs, force)
+
+
 def _at_end(scenario: Scenario, ice: Path | None, pieces: Path | None) -> Callable[[Scheduler], None]:
     def keep(scheduler: Scheduler) -> None:
         if ice is not None:
@@ -149,8 +155,8 @@ def _at_end(scenario: Scenario, ice: Path | None, pieces: Path | None) -> Callab
     return keep
 
 
-def _kind(ice: Path | None) -> str:
-    return ".parquet" if ice is not None and ice.suffix == ".parquet" else ".ice"
+def _kind(ice: Path) -> str:
+    return ".parquet" if ice.suffix == ".parquet" else ".ice"
 
 
 def _keep_ice(path: Path, scheduler: Scheduler) -> None:
@@ -161,11 +167,6 @@ def _keep_ice(path: Path, scheduler: Scheduler) -> None:
     assert isinstance(scheduler.sheet, SheetPort)
     with whole(path, _kind(path)) as part:
         write(scheduler.sheet.sheet, part)
-
-
-def _need_rubble(pieces: Path | None, scenario: Scenario) -> None:
-    if pieces is not None and not scenario.rubble.enabled:
-        raise InputError("--pieces writes the rubble of a run, and rubble.enabled is false; leave one of the two out")
 
 
 def _keep_pieces(path: Path, scenario: Scenario, scheduler: Scheduler) -> None:

@@ -21,11 +21,10 @@ from coupling.interface import NS, Array
 from coupling.rubble_port import RubblePort
 from coupling.scheduler import Scheduler
 from coupling.sheet_port import SheetPort
-from lattice.fragments import front_rows
+from lattice.fragments import front_x
 from rubble.geometry import clip
-from rubble.roster import PlateState, PrismState, enter, prisms_of, roster
+from rubble.roster import Entry, PlateState, PrismState, enter, entries, roster
 
-FORMAT: Literal["brash pieces 1"] = "brash pieces 1"
 SAME = 1e-6  #: relative difference of thickness and density to which ice is the same
 FLAT = 0.1  #: share of the thickness at top and bottom of the floe beside which ice may lie: it lies under or on it
 
@@ -34,7 +33,7 @@ Positive = Annotated[FiniteFloat, Field(gt=0.0)]
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=False)
+    model_config = ConfigDict(extra="forbid")
 
 
 class _Prism(_Part):
@@ -58,16 +57,12 @@ class _Plate(_Part):
 class Pieces(_Part):
     """What the file holds."""
 
-    format: Literal["brash pieces 1"] = FORMAT
+    format: Literal["brash pieces 1"] = "brash pieces 1"
     scenario: str  #: title of the run that wrote it
     time: FiniteFloat  #: at its end [s]
     thickness: Positive  #: of the ice [m]
     density: Positive  #: [kg/m^3]
     plates: list[_Plate]
-
-    def states(self) -> list[PlateState]:
-        """As the rubble takes them."""
-        return [_state(p) for p in self.plates]
 
 
 def read(path: Path) -> Pieces:
@@ -86,8 +81,8 @@ def read(path: Path) -> Pieces:
         raise InputError(f"{path}: {where}: {first['msg']}; give a file by `cosim run --pieces`") from None
 
 
-def checked(path: Path, scenario: Scenario) -> Pieces:
-    """The same, of the ice of this scenario."""
+def checked(path: Path, scenario: Scenario) -> list[Entry]:
+    """What enters the rubble from a file, which is of the ice of this scenario."""
     found, ice = read(path), scenario.ice
     for what, theirs, ours, unit in (
         ("thickness", found.thickness, ice.thickness, "m"),
@@ -102,15 +97,14 @@ def checked(path: Path, scenario: Scenario) -> Pieces:
         if abs(float(np.linalg.norm(plate.quaternion)) - 1.0) > SAME:
             raise InputError(f"{path}: plates.{number}.quaternion has not the length 1; it is the turn of the plate")
     try:
-        prisms_of(found.states(), ice.density)
+        return entries([_state(p) for p in found.plates], ice.density)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
-    return found
 
 
 def put(path: Path, scenario: Scenario, sheet: SheetPort, rubble: RubblePort) -> None:
     """The rubble has the pieces of a file; InputError where the floe would lie on them."""
-    enter(rubble.layer, checked(path, scenario).states())
+    enter(rubble.layer, checked(path, scenario))
     missing = lies_in_floe(sheet, rubble)
     if missing > 0.0:
         gap = scenario.sheet.gap
@@ -124,9 +118,7 @@ def put(path: Path, scenario: Scenario, sheet: SheetPort, rubble: RubblePort) ->
 def lies_in_floe(sheet: SheetPort, rubble: RubblePort) -> float:
     """How far pieces beside the floe, neither under nor on it, reach behind its front [m]; 0 if none does."""
     grid, ice, layer = sheet.sheet.grid, sheet.sheet.ice, rubble.layer
-    row = front_rows(grid, sheet.sheet.present)
-    front = grid.x0 + row * grid.d + np.where(row == grid.nx - 1, 0.0, 0.5 * grid.d)
-    front[row < 0] = -np.inf
+    front = front_x(grid, sheet.sheet.present)
     top, bottom = ice.freeboard - FLAT * ice.h, ice.freeboard - (1.0 - FLAT) * ice.h
     sides, worst = layer.corners.reshape(2, -1, 3), 0.0
     for first, end in pairwise(layer.store.tables.pieces.offset):
