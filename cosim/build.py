@@ -212,7 +212,7 @@ def _whole_sheet(scenario: Scenario, ice: Ice, grid: Grid) -> Floe:
         engine = explicit_engine(scenario.fracture.device)
         return ExplicitSheet(engine(grid, ice, springs, window, **options), criteria=criteria)
     windows = max(1, round(scenario.fracture.longest_step / window))
-    return Sheet(Engine(grid, ice, springs, **options), window, criteria=criteria, long_step=windows)
+    return Sheet(Engine(grid, ice, springs, threads=s.threads, **options), window, criteria=criteria, long_step=windows)
 
 
 def build_measured(scenario: Scenario) -> Measured:

@@ -202,7 +202,8 @@ class Sheet(Floe):
 
     def _rotation(self) -> Array:
         """Larger of the two rotations of each node that is present, (nodes,) [rad]."""
-        return np.where(self.present, np.abs(self.state.q[:, 1:]).max(axis=1), 0.0)
+        q = np.abs(self.state.q)
+        return np.where(self.present, np.maximum(q[:, 1], q[:, 2]), 0.0)
 
     def _tear_off(self, t: float, contact: EdgeContact, out: Outcome, release: Release) -> None:
         """Parts a piece that has turned out of the range of small rotations, with what has gone half as far.

@@ -147,7 +147,8 @@ class Sheet(Section):
     #: from the place where its front would just touch the structure to where it begins: over it the floe drifts alone,
     #: into what lies there (`rubble.pieces`) [m]
     gap: Annotated[LengthOrZero, Limits("0 m", "100 km", "20 m")] = 0.0
-    #: that march a sheet with closing cracks side by side, each on a core of its own; the same bits with one and two
+    #: each on a core of its own, to the same bits: two share a sheet with closing cracks, or solve the plane and the
+    #: bending of one with open cracks side by side; with true inertia (`fracture.propagation`) open cracks use one
     threads: Annotated[int, Field(ge=1, le=2)] = 1
 
     @property

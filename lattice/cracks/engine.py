@@ -25,7 +25,7 @@ from lattice.ice import Ice
 from lattice.state import State
 from lattice.stiffness import Springs
 from lattice.strain import CellState
-from lattice.team import ALONE, CREW, TILES, Team
+from lattice.team import ALONE, CREW, Team
 from lattice.varied import Varied
 
 #: largest material damping where inertia is scaled, as share of the critical sub-step: a tenth of the sub-step is lost,
@@ -52,16 +52,9 @@ class CrackingEngine(ExplicitEngine):
         *,
         law: CrackLaw,
         rigid: float | None = None,
-        threads: int = 1,
         **options: Any,
     ):
-        """As `ExplicitEngine`, with the ``law`` of the cracks; ``rigid`` as in `local_of`, for ice that varies.
-
-        ``threads`` march together, at most `team.TILES`; bits are the same for any number.
-        """
-        if not 1 <= threads <= TILES:
-            raise ValueError(f"a sheet on {threads} threads; give 1 to {TILES}")
-        self.threads = threads
+        """As `ExplicitEngine`, with the ``law`` of the cracks; ``rigid`` as in `local_of`, for ice that varies."""
         plate = Plate(grid.d, ice.h, 0.5 * springs.K_out, HOURGLASS * ice.E * ice.h)
         varied = options.get("varied") or Varied.uniform(grid.cells)
         E, s, t = (layout.at_places(grid, values) for values in (varied.E, varied.strength, varied.thickness))

@@ -23,10 +23,12 @@ class Dissection(NamedTuple):
     """Order of elimination of all dof and the fronts, children before parents. Numbers are those of the new order."""
 
     order: IntArray  #: (n,) old number of each dof
+    rank: IntArray  #: (n,) new number of each dof
     first: IntArray  #: (fronts + 1,) first own dof of each front
     edge: IntArray  #: edges of all fronts, one after the other
     edge_at: IntArray  #: (fronts + 1,) where each edge starts in ``edge``
     children: IntArray  #: (fronts,) how many of the fronts before are its own
+    parent: IntArray  #: (fronts,) the front that this one is a child of; of the last one -1
     cell_at: IntArray  #: (fronts + 1,) where each front's cells start in ``cells``
     cells: IntArray  #: (cells,) each in the front of its first dof
     place: IntArray  #: (cells, dof of a cell) row in that front, own dof before edge dof, in the order of ``cells``
@@ -74,7 +76,7 @@ def dissect(grid: Grid, per_node: int) -> Dissection:
     cells = np.argsort(home, kind="stable")
     cell_at = np.searchsorted(home[cells], np.arange(len(fronts) + 1))
     touched = [in_cell[cells[cell_at[k] : cell_at[k + 1]]].ravel() for k in range(len(fronts))]
-    edges, deepest = _edges(fronts, first, touched)
+    edges, parent, deepest = _edges(fronts, first, touched)
     node_place = np.empty((grid.cells, 4), np.int64)
     for k in range(len(fronts)):
         of = slice(cell_at[k], cell_at[k + 1])
@@ -83,10 +85,12 @@ def dissect(grid: Grid, per_node: int) -> Dissection:
     w, m = sizes * per_node, np.array([len(e) for e in edges]) * per_node
     return Dissection(
         order=_to_dof(nodes, per_node),
+        rank=_to_dof(rank, per_node),
         first=first * per_node,
         edge=_to_dof(np.concatenate(edges), per_node),
         edge_at=np.concatenate(([0], np.cumsum(m))),
         children=np.array([c for _, c in fronts]),
+        parent=parent,
         cell_at=cell_at,
         cells=cells,
         place=_to_dof(node_place, per_node).reshape(cell_dof(grid, per_node).shape),
@@ -101,19 +105,21 @@ def _to_dof(nodes: IntArray, per_node: int) -> IntArray:
     return (nodes[..., None] * per_node + np.arange(per_node)).reshape(*nodes.shape[:-1], -1)
 
 
-def _edges(fronts: Fronts, first: IntArray, touched: list[IntArray]) -> tuple[list[IntArray], int]:
-    """Later nodes that each front touches, sorted, and the largest stack of squares of them that waits for parents.
+def _edges(fronts: Fronts, first: IntArray, touched: list[IntArray]) -> tuple[list[IntArray], IntArray, int]:
+    """Later nodes that each front touches, sorted, its parent, and the largest stack that waits for parents.
 
-    ``touched`` are the nodes of the cells of each front.
+    ``touched`` are the nodes of the cells of each front; the stack is one of squares of edges.
     """
     edges: list[IntArray] = []
+    parent = np.full(len(fronts), -1)
     waiting: list[int] = []
     stack = deepest = 0
     for k, (_, count) in enumerate(fronts):
         kids = [waiting.pop() for _ in range(count)][::-1]
+        parent[kids] = k
         found = np.unique(np.concatenate([touched[k], *(edges[c] for c in kids)]))
         edges.append(found[found >= first[k + 1]])
         stack += len(edges[k]) ** 2 - sum(len(edges[c]) ** 2 for c in kids)
         waiting.append(k)
         deepest = max(deepest, stack)
-    return edges, deepest
+    return edges, parent, deepest

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.linalg as la
 
-from lattice.contact import EdgeContact, Lever
+from lattice.contact import EdgeContact, Lever, point_displacement
 from lattice.grid import Array, IntArray
 from lattice.implicit.linear import CrackedSystem
 from lattice.state import StepError
@@ -53,11 +53,17 @@ class Edge:
                 return f
         raise StepError("the contact of the sheet's edge finds no equilibrium")
 
-    def response(self, f: Array) -> tuple[Array, Array]:
-        """Displacement of all nodes, (n, 2) and (n, 3), under forces (m, 3) at the points."""
-        u = self._in.response(self._u_dof, f[:, :2].ravel()).reshape(-1, 2)
-        on_q = f[:, 2] if self._flat else self._on_node(f).ravel()
-        return u, self._out.response(self._q_dof, on_q).reshape(-1, 3)
+    def free(self, u: Array, q: Array) -> Array:
+        """How the points move, (m, 3) [m], by half solutions of both systems."""
+        u, q = self._in.at(self._u_dof, u).reshape(-1, 2), self._out.at(self._q_dof, q)
+        if self._flat:
+            return np.column_stack((u, q))
+        return point_displacement(u, q.reshape(-1, 3), np.arange(len(u)), self._lever)
+
+    def push(self, f: Array, u: Array, q: Array) -> None:
+        """Adds forces (m, 3) at the points to half solutions of both systems."""
+        self._in.add(self._u_dof, f[:, :2].ravel(), u)
+        self._out.add(self._q_dof, f[:, 2] if self._flat else self._on_node(f).ravel(), q)
 
     def compliance(self) -> Array:
         """Of the points, (m, 3, m, 3) [m/N]: T C T^T with y = T x, of both systems."""

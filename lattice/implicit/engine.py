@@ -7,6 +7,8 @@ The scheme is that of `lattice.implicit.step`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from lattice.assembly import (
@@ -27,6 +29,7 @@ from lattice.memory import Memory, remember
 from lattice.springs import SpringTable
 from lattice.state import State
 from lattice.stiffness import Springs
+from lattice.team import CREW, TILES, Team
 from lattice.varied import Varied
 
 
@@ -45,12 +48,17 @@ class Engine:
         damping: float = 0.0,
         alpha: float = 0.0,
         varied: Varied | None = None,
+        threads: int = 1,
     ):
         """``held_in_plane`` (nodes,) nodes held in x and y, or (nodes, 2) each direction on its own.
 
         ``damping`` is the hydrodynamic damping per area [N s/m3], ``alpha`` the material damping [s] (2.27), ``varied``
-        what differs from cell to cell.
+        what differs from cell to cell. ``threads`` work together, at most `team.TILES`; bits are the same for any
+        number.
         """
+        if not 1 <= threads <= TILES:
+            raise ValueError(f"a sheet on {threads} threads; give 1 to {TILES}")
+        self.threads = threads
         self.grid, self.ice, self.alpha = grid, ice, alpha
         self.M_u, self.M_q = in_plane_mass(grid, ice), out_of_plane_mass(grid, ice)
         self.inertia_u, self.inertia_q = self.M_u, self.M_q  #: with which the nodes move, see `ExplicitEngine`
@@ -133,22 +141,39 @@ class Engine:
         return Step(dt, state, (first, self._euler(t + dt, start, force_u, force_q, contact)), lever_of(contact))
 
     def _euler(self, t: float, s: State, force_u: Array, force_q: Array, contact: EdgeContact) -> Stage:
-        """Backward Euler over a: (M/a^2 + C/a + K) x = f + M (x_0/a^2 + v_0/a) + C x_0 / a."""
-        a, nodes = self._a, contact.nodes
-        b_u = force_u.ravel() + self.M_u * (s.u.ravel() / a**2 + s.u_dot.ravel() / a)
-        b_q = force_q.ravel() + self.M_q * (s.q.ravel() / a**2 + s.q_dot.ravel() / a) + self.C_q * s.q.ravel() / a
-        if self.alpha:
-            b_u = b_u + self.alpha / a * self._in.spring_force(s.u.ravel())
-            b_q = b_q + self.alpha / a * self._out.spring_force(s.q.ravel())
-        u, q, f = self._in.solve(b_u).reshape(-1, 2), self._out.solve(b_q).reshape(-1, 3), np.zeros((0, 3))
+        """Backward Euler over a: (D + (1 + alpha/a) K) x = f + M (x_0/a^2 + v_0/a) + C x_0/a + alpha/a K x_0.
+
+        D = M/a^2 + C/a + k_f. With x = c x_0 + d, c = (alpha/a) / (1 + alpha/a), the product with K goes:
+        (D + (1 + alpha/a) K) d = f + M ((1 - c) x_0/a^2 + v_0/a) + (1 - c) C x_0/a - c k_f x_0.
+        """
+        a, nodes, f = self._a, contact.nodes, np.zeros((0, 3))
+        c = self.alpha / (a + self.alpha)
+        old_u, old_q = s.u.ravel(), s.q.ravel()
+        b_u = force_u.ravel() + self.M_u * ((1.0 - c) / a**2 * old_u + s.u_dot.ravel() / a)
+        b_q = force_q.ravel() + self.M_q * ((1.0 - c) / a**2 * old_q + s.q_dot.ravel() / a)
+        b_q += ((1.0 - c) / a * self.C_q - c * self.k_f) * old_q
+        half_u, half_q = self._both(lambda: self._in.half(b_u), lambda: self._out.half(b_q))
         if len(nodes):
-            edge = self.edge(nodes, lever_of(contact))
-            f = edge.force(t, point_displacement(u, q, nodes, lever_of(contact)), contact)
+            edge, start = self.edge(nodes, lever_of(contact)), point_displacement(s.u, s.q, nodes, lever_of(contact))
+            f = edge.force(t, c * start + edge.free(half_u, half_q), contact)
             if f.any():
-                du, dq = edge.response(f)
-                u, q = u + du, q + dq
+                edge.push(f, half_u, half_q)
+        whole_u, whole_q = self._both(lambda: self._in.whole(half_u), lambda: self._out.whole(half_q))
+        u, q = c * s.u + whole_u.reshape(-1, 2), c * s.q + whole_q.reshape(-1, 3)
         u_dot, q_dot = (u - s.u) / a, (q - s.q) / a
         return Stage(State(u, q, u_dot, q_dot), (u_dot - s.u_dot) / a, (q_dot - s.q_dot) / a, f)
+
+    def _both(self, in_plane: Callable[[], Array], out_of_plane: Callable[[], Array]) -> tuple[Array, Array]:
+        """What two calls, one for each system, return: at the same time where there are two threads."""
+        if self.threads == 1:
+            return in_plane(), out_of_plane()
+        calls, found = (out_of_plane, in_plane), [np.empty(0), np.empty(0)]
+
+        def one(team: Team) -> None:
+            found[team.member] = calls[team.member]()
+
+        CREW.run(one, 2, 0)
+        return found[1], found[0]
 
     def edge(self, nodes: IntArray, lever: Lever) -> Edge:
         """Points at the end of these levers on nodes (m,), in the systems in use."""

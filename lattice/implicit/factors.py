@@ -6,7 +6,7 @@ Each front (`lattice.implicit.dissection`) is eliminated as
     [A21 A22]
 
 With the panel, forward substitution in a front is y = P x and backward substitution x = P^T (y_own, -x_edge): one
-matrix-vector product each.
+matrix-vector product each (`lattice.implicit.substitution`).
 """
 
 from __future__ import annotations
@@ -15,11 +15,13 @@ import numpy as np
 
 from lattice.assembly import CellStiffness
 from lattice.compiled import compiled
-from lattice.grid import Array, BoolArray, Grid
+from lattice.grid import Array, BoolArray, Grid, IntArray
+from lattice.implicit.columns import Columns
 from lattice.implicit.dissection import Dissection, dissect
+from lattice.implicit.substitution import Way, backward, backward_along, forward, forward_along, way_from
 
 
-@compiled()
+@compiled(nogil=True)
 def factorise(s: Dissection, live: BoolArray, cells: CellStiffness, diagonal: Array, held: BoolArray) -> Array:
     """Panels of all fronts, flat; ``live`` in the order of the cells, ``diagonal`` and ``held`` of the dof."""
     first, edge, edge_at, place = s.first, s.edge, s.edge_at, s.place
@@ -74,7 +76,7 @@ def factorise(s: Dissection, live: BoolArray, cells: CellStiffness, diagonal: Ar
     return panels
 
 
-@compiled()
+@compiled(nogil=True)
 def inverse_of_factor(L: Array) -> Array:
     """Inverse of a lower triangle."""
     n = len(L)
@@ -87,73 +89,43 @@ def inverse_of_factor(L: Array) -> Array:
     return W
 
 
-@compiled()
-def substitute(s: Dissection, panels: Array, x: Array, work: Array) -> None:
-    """Forward and backward substitution in place, x (n,) in the order of elimination."""
-    first, edge, edge_at, panel_at, fronts = s.first, s.edge, s.edge_at, s.panel_at, len(s.first) - 1
-    for k in range(fronts):
-        a, b, c = first[k], first[k + 1], edge_at[k]
-        w, m = b - a, edge_at[k + 1] - c
-        P = panels[panel_at[k] : panel_at[k + 1]].reshape(w + m, w)
-        y = work[: w + m]
-        np.dot(P, x[a:b], y)
-        x[a:b] = y[:w]
-        for i in range(m):
-            x[edge[c + i]] -= y[w + i]
-    for k in range(fronts - 1, -1, -1):
-        a, b, c = first[k], first[k + 1], edge_at[k]
-        w, m = b - a, edge_at[k + 1] - c
-        P = panels[panel_at[k] : panel_at[k + 1]].reshape(w + m, w)
-        z = work[: w + m]
-        z[:w] = x[a:b]
-        for i in range(m):
-            z[w + i] = -x[edge[c + i]]
-        np.dot(P.T, z, x[a:b])
-
-
-@compiled()
-def substitute_many(s: Dissection, panels: Array, x: Array) -> None:
-    """As `substitute` for right sides (n, k), in place."""
-    first, edge, edge_at, panel_at = s.first, s.edge, s.edge_at, s.panel_at
-    fronts, r = len(first) - 1, x.shape[1]
-    for k in range(fronts):
-        a, b = first[k], first[k + 1]
-        rim = edge[edge_at[k] : edge_at[k + 1]]
-        P = panels[panel_at[k] : panel_at[k + 1]].reshape(b - a + len(rim), b - a)
-        if x[a:b].any():
-            y = np.dot(P, x[a:b])
-            x[a:b] = y[: b - a]
-            for i in range(len(rim)):
-                x[rim[i]] -= y[b - a + i]
-    for k in range(fronts - 1, -1, -1):
-        a, b = first[k], first[k + 1]
-        rim = edge[edge_at[k] : edge_at[k + 1]]
-        P = panels[panel_at[k] : panel_at[k + 1]].reshape(b - a + len(rim), b - a)
-        z = np.empty((b - a + len(rim), r))
-        z[: b - a] = x[a:b]
-        for i in range(len(rim)):
-            z[b - a + i] = -x[rim[i]]
-        x[a:b] = np.dot(P.T, z)
-
-
 class Factors:
-    """Factorised ``K(live) + diag`` with held degrees of freedom at zero."""
+    """Factorised ``K(live) + diag`` = L L^T with held degrees of freedom at zero."""
 
     def __init__(self, grid: Grid, cells: CellStiffness, live: BoolArray, diagonal: Array, held: BoolArray):
         s = self._s = dissect(grid, cells.K.shape[1] // 4)
-        self._held = np.flatnonzero(held[s.order])
-        self._panels = factorise(s, live[s.cells], cells, diagonal[s.order], held[s.order])
+        self._is_held = held[s.order]
+        self._held = np.flatnonzero(self._is_held)
+        self._panels = factorise(s, live[s.cells], cells, diagonal[s.order], self._is_held)
         self._work = np.empty(s.widest)
 
-    def solve(self, b: Array) -> Array:
-        """X for right sides (n,) or (n, k)."""
-        s = self._s
-        y = np.ascontiguousarray(b[s.order])
+    def forward(self, b: Array) -> Array:
+        """L^-1 b, (n,) in the order of elimination, for b (n,)."""
+        y = b[self._s.order]
         y[self._held] = 0.0
-        if y.ndim == 1:
-            substitute(s, self._panels, y, self._work)
-        else:
-            substitute_many(s, self._panels, y)
-        x = np.empty_like(y)
-        x[s.order] = y
-        return x
+        forward(self._s, self._panels, y, self._work)
+        return y
+
+    def backward(self, y: Array) -> Array:
+        """L^-T y, (n,), for y (n,) in the order of elimination, which is lost."""
+        backward(self._s, self._panels, y, self._work)
+        return y[self._s.rank]
+
+    def way(self, dof: IntArray) -> Way:
+        """From some dof to the last front."""
+        return way_from(self._s, self._s.rank[dof])
+
+    def columns(self, dof: IntArray, way: Way, b: Array) -> Columns:
+        """L^-1 of columns that are b (m, r) at some dof, with the way from them, and zero elsewhere."""
+        at = self._s.rank[dof]
+        x = np.zeros((len(way.rows), b.shape[1]))
+        x[np.searchsorted(way.rows, at)] = b
+        x[np.searchsorted(way.rows, at[self._is_held[at]])] = 0.0
+        forward_along(self._s, self._panels, way, x)
+        return Columns(way.rows, x)
+
+    def at(self, dof: IntArray, way: Way, y: Array) -> Array:
+        """What `backward` gives at some dof (m,), with the way from them; y stays."""
+        x = y[way.rows]
+        backward_along(self._s, self._panels, way, x)
+        return x[np.searchsorted(way.rows, self._s.rank[dof])]

@@ -1,26 +1,35 @@
 """Factorised system matrix that loses cells as low-rank updates.
 
 With A the matrix at factorisation and U the scaled spring rows of the cells removed since, the present matrix is
-A - U U^T and, with Z = A^-1 U and S = I - U^T Z (Woodbury),
-
-    (A - U U^T)^-1 b = A^-1 b + Z S^-1 U^T A^-1 b.
-
-When the rank has grown past `MAX_RANK` the matrix is factorised anew.
+A - U U^T, see `lattice.implicit.columns`. When the rank has grown past `MAX_RANK` the matrix is factorised anew.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
-import scipy.linalg as la
 
 from lattice.assembly import CellSprings, cell_stiffness
 from lattice.grid import Array, BoolArray, Grid, IntArray
+from lattice.implicit.columns import NOTHING, Columns, Lost
 from lattice.implicit.factors import Factors
+from lattice.implicit.substitution import Way
 from lattice.memory import Memory, remember
-from lattice.springs import SpringTable, spring_force
+from lattice.springs import SpringTable
 
-MAX_RANK = 120  #: columns of U at which a new factorisation is cheaper than carrying them (60 x 60 to 240 x 240 nodes)
-MAX_AT_ONCE = 4  #: cells removed between two uses at which a new factorisation is cheaper than an update
+MAX_RANK = 300  #: columns of U at which a new factorisation is cheaper than carrying them (40 x 40 to 240 x 240 nodes)
+MAX_AT_ONCE = 12  #: cells removed between two uses at which a new factorisation is cheaper than an update
+
+
+class Points(NamedTuple):
+    """Dof that forces act on."""
+
+    dof: IntArray  #: (m,)
+    way: Way  #: from them
+    unit: Columns  #: of a unit force on each
+    lost: Lost | None  #: for which ``compliance`` holds
+    compliance: Array  #: (m, m)
 
 
 class CrackedSystem:
@@ -39,10 +48,9 @@ class CrackedSystem:
 
     def _factorise(self) -> None:
         self._lu = Factors(self._grid, self._cell_stiffness, self._intact, self._diagonal, self._held)
-        self._cells = np.empty(0, np.int64)  #: removed since
-        self._Z = np.empty((len(self._held), 0))
-        self._points = np.empty(0, np.int64)
-        self._point_columns = np.empty((len(self._held), 0))
+        self._lost = Lost(NOTHING, np.empty((0, 0)))  #: rows of the cells that were removed since
+        self._points: Points | None = None  #: asked for last
+        self._right, self._forward = np.empty(0), np.empty(0)  #: right side asked for last, and L^-1 of it
 
     def save(self) -> Memory:
         """What `memory.recall` sets back; factors and columns are kept by reference."""
@@ -56,74 +64,68 @@ class CrackedSystem:
     def _update(self) -> None:
         """Brings the solver up to date with the cells that were removed."""
         cells, self._pending = self._pending, []
-        if len(cells) > MAX_AT_ONCE or self._Z.shape[1] + len(cells) * len(self._rows) > MAX_RANK:
+        if len(cells) > MAX_AT_ONCE or self._lost.rank + len(cells) * len(self._rows) > MAX_RANK:
             self._factorise()
         elif cells:
-            self._Z = np.hstack((self._Z, self._lu.solve(self._spring_columns(cells))))
-            self._cells = np.append(self._cells, cells)
-            self._S = la.lu_factor(np.eye(self._Z.shape[1]) - self._elongation(self._Z))
+            dof, U = self._spring_columns(cells)
+            self._lost = self._lost.with_more(self._lu.columns(dof, self._lu.way(dof), U))
 
-    def _spring_columns(self, cells: list[int]) -> Array:
-        """U of some cells, (n, rank)."""
-        r = len(self._rows)
-        U = np.zeros((len(self._held), r * len(cells)))
+    def _spring_columns(self, cells: list[int]) -> tuple[IntArray, Array]:
+        """Dof of some cells (m,) and U there, (m, rank)."""
+        dof, r = np.unique(self._dof[cells]), len(self._rows)
+        U = np.zeros((len(dof), r * len(cells)))
         for k, cell in enumerate(cells):
-            U[self._dof[cell], k * r : (k + 1) * r] = (self._root(cell)[:, None] * self._rows).T
-        U[self._held] = 0.0
-        return U
+            root = self._root(cell)
+            U[np.searchsorted(dof, self._dof[cell]), k * r : (k + 1) * r] = (root[:, None] * self._rows).T
+        return dof, U
 
-    def _elongation(self, x: Array) -> Array:
-        """U^T x of all removed cells, for x (n,) or (n, k) that is zero where held."""
-        ends = x.reshape(len(x), -1)[self._dof[self._cells]]
-        long = self._root(self._cells)[:, :, None] * (self._rows @ ends)
-        return np.asarray(long.reshape(-1, *x.shape[1:]))
-
-    def _root(self, cell: IntArray | int) -> Array:
-        """Roots of the share of each spring of a cell or of cells (k,), (..., springs)."""
-        return np.asarray(np.sqrt(self._springs.share[cell][..., self._springs.kind]))
+    def _root(self, cell: int) -> Array:
+        """Roots of the share of each spring of a cell, (springs,)."""
+        return np.asarray(np.sqrt(self._springs.share[cell])[self._springs.kind])
 
     def solve(self, b: Array) -> Array:
         """X for a right side b over all degrees of freedom, held ones come back as 0, (n,)."""
+        return self.whole(self.half(b))
+
+    def half(self, b: Array) -> Array:
+        """The first half of a solution for b (n,), to which forces may be added before the second half.
+
+        A step that is made again because a cell has failed begins with the same b: only the correction is new.
+        """
         self._update()
-        return self._corrected(self._lu.solve(b))
+        if not np.array_equal(b, self._right):
+            self._right, self._forward = b.copy(), self._lu.forward(b)
+        y = self._forward.copy()
+        self._lost.correct(y)
+        return y
 
-    def _corrected(self, x: Array) -> Array:
-        """From a solution with the factorised matrix to one with the present matrix."""
-        if len(self._cells):
-            x += self._Z @ la.lu_solve(self._S, self._elongation(x), check_finite=False)
-        return x
+    def at(self, dof: IntArray, half: Array) -> Array:
+        """What the solution will be at some dof (m,)."""
+        return self._lu.at(dof, self._points_at(dof).way, half)
 
-    def spring_force(self, x: Array) -> Array:
-        """K x of the springs of the intact cells, (n,)."""
-        return np.asarray(spring_force(self._springs, self._intact, x))
+    def add(self, dof: IntArray, b: Array, half: Array) -> None:
+        """Adds what a right side b (m,) that acts on `dof` only does, in place."""
+        (rows, values), more = self._points_at(dof).unit, np.zeros_like(half)
+        more[rows] = values @ b
+        self._lost.correct(more)
+        half += more
+
+    def whole(self, half: Array) -> Array:
+        """The solution (n,); its first half is lost."""
+        return self._lu.backward(half)
 
     def compliance(self, dof: IntArray) -> Array:
         """Rows and columns `dof` of the inverse, (m, m); zero for held ones."""
         self._update()
-        self._keep_columns(dof)
-        G: Array = self._point_columns[dof]
-        if len(self._cells):
-            Z = self._Z[dof]
-            G = G + Z @ la.lu_solve(self._S, Z.T, check_finite=False)
-        return G
+        points = self._points_at(dof)
+        if points.lost is not self._lost:
+            points = self._points = points._replace(lost=self._lost, compliance=self._lost.product(points.unit))
+        return points.compliance
 
-    def response(self, dof: IntArray, b: Array) -> Array:
-        """X for a right side b (m,) that acts on `dof` only, (n,); from the columns that `compliance` keeps."""
-        self._update()
-        self._keep_columns(dof)
-        return self._corrected(self._point_columns @ b)
-
-    def _keep_columns(self, dof: IntArray) -> None:
-        """Columns of A^-1 at `dof`; those already known are kept."""
-        if np.array_equal(dof, self._points):
-            return
-        known = {p: k for k, p in enumerate(self._points.tolist())}
-        columns = np.zeros((len(self._held), len(dof)))
-        old = [k for k, p in enumerate(dof.tolist()) if p in known]
-        new = [k for k, p in enumerate(dof.tolist()) if p not in known]
-        columns[:, old] = self._point_columns[:, [known[int(dof[k])] for k in old]]
-        if new:
-            E = np.zeros((len(self._held), len(new)))
-            E[dof[new], np.arange(len(new))] = 1.0
-            columns[:, new] = self._lu.solve(E)
-        self._points, self._point_columns = dof.copy(), columns
+    def _points_at(self, dof: IntArray) -> Points:
+        """Of some dof (m,), kept until others are asked for."""
+        if self._points is None or not np.array_equal(dof, self._points.dof):
+            way = self._lu.way(dof)
+            unit = self._lu.columns(dof, way, np.eye(len(dof)))
+            self._points = Points(dof.copy(), way, unit, None, np.empty((0, 0)))
+        return self._points

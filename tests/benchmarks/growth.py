@@ -3,7 +3,7 @@
     python tests/benchmarks/growth.py -o growth.png                     # all of it, in about an hour
     python tests/benchmarks/growth.py --sizes 40 60 120 --limit 60      # in a few minutes
 
-Each run has a process of its own, on one thread, and goes on for `SECONDS` of the floe from the first touch or as far
+Each run has a process of its own, and goes on for `SECONDS` of the floe from the first touch or as far
 as ``--limit`` seconds of processor time reach (a share of them on explicit engines, see `CASES`). Cases:
 
 * `implicit`: open cracks, quasi-static (van Vliet 2018, section 6.3);
@@ -74,6 +74,7 @@ class Task(NamedTuple):
     case: str
     nodes: int  #: along a side
     limit: float  #: longest processor time [s]
+    threads: int = 1
     seconds: float = SECONDS  #: longest time of the floe [s]
 
 
@@ -94,10 +95,10 @@ class Run(NamedTuple):
         return float(clock[k] - clock[0]) / float(self.at[k] - self.at[0])
 
 
-def floe(case: str, n: int) -> Scheduler:
+def floe(case: str, n: int, threads: int = 1) -> Scheduler:
     """The floe with n x n nodes, alone."""
-    c = CASES[case]
-    return build(load_scenario(c.scenario, ["rubble.enabled=false", f"sheet.nodes=[{n}, {n}]", *c.overrides]))
+    c, size = CASES[case], (f"sheet.nodes=[{n}, {n}]", f"sheet.threads={threads}")
+    return build(load_scenario(c.scenario, ["rubble.enabled=false", *size, *c.overrides]))
 
 
 def measure(task: Task) -> Run:
@@ -105,7 +106,7 @@ def measure(task: Task) -> Run:
     floe(task.case, 24).macro_step()  # compiles
     with threadpool_limits(1):
         began = time.process_time()
-        scheduler = floe(task.case, task.nodes)
+        scheduler = floe(task.case, task.nodes, task.threads)
         rows = []
         while not rows or (rows[-1][0] < task.seconds and rows[-1][2] - rows[0][2] < task.limit):
             scheduler.macro_step()
@@ -162,9 +163,10 @@ def main() -> None:
     parser.add_argument("--cases", nargs="*", choices=CASES, default=list(CASES))
     parser.add_argument("--sizes", type=int, nargs="*", default=(*SIZES, 1000), help="nodes along a side of the floe")
     parser.add_argument("--limit", type=float, default=1200.0, help="longest processor time of an implicit run [s]")
+    parser.add_argument("--threads", type=int, choices=(1, 2), default=1, help="of the implicit and the closing case")
     parser.add_argument("-o", "--output", type=Path, default=None, metavar="PNG", help="picture")
     options = parser.parse_args()
-    print(f"165 m floe, breaking only. {machine()}")
+    print(f"165 m floe, breaking only, {options.threads} thread(s). {machine()}")
     found: dict[str, list[Run]] = {}
     for name in options.cases:
         print(
@@ -172,7 +174,7 @@ def main() -> None:
         )
         print("|---|---|---|---|---|---|---|---|")
         for n in (n for n in options.sizes if n <= CASES[name].largest):
-            r = apart(measure, Task(name, n, CASES[name].share * options.limit))
+            r = apart(measure, Task(name, n, CASES[name].share * options.limit, options.threads))
             found.setdefault(name, []).append(r)
             print(
                 f"| {name} | {n} x {n} | {r.at[-1]:g} | {r.failed} | {r.start:.1f} | {r.per_second(r.wall):.2f} "

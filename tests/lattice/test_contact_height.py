@@ -13,20 +13,10 @@ from lattice.implicit.engine import Engine
 from lattice.sheet import Sheet
 from lattice.state import State
 from lattice.stiffness import hrennikoff
+from tests.lattice.pushes import Push, no_force
 
 GRID = Grid(9, 7, 3.0)
 ICE = Ice(E=8.7e9, nu=1 / 3, h=3.0, rho_i=846.0, rho_w=1006.0, sigma_t=1e15, sigma_f=1e15, sigma_c=5e15)
-
-
-class Push:
-    """Constant forces (m, 3) on nodes at a height."""
-
-    def __init__(self, nodes, force, height, lead=0.0):
-        self.nodes, self.force = nodes, force
-        self.height, self.lead = np.full(len(nodes), height), np.full(len(nodes), lead)
-
-    def evaluate(self, t, y):
-        return self.force, np.zeros((len(y), 3, 3))
 
 
 class Cushion:
@@ -49,10 +39,6 @@ def back_held(grid):
     held = np.zeros(grid.nodes, bool)
     held[grid.edge_nodes("x-")] = True
     return held
-
-
-def no_force(grid):
-    return np.zeros((grid.nodes, 2)), np.zeros((grid.nodes, 3))
 
 
 @pytest.mark.parametrize("z", [0.4, -0.4])
