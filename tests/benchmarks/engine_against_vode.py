@@ -124,7 +124,7 @@ class Floe:
             c._x.copy(),
             c._sample_y.copy(),
             c._width.copy(),
-            c._z,
+            c.touching_z,
             np.array(c._s.z),
             np.array(c._s.r),
             law,
@@ -231,7 +231,7 @@ def main() -> None:
     parser.add_argument("--methods", nargs="*", default=("adams", "bdf"))
     options = parser.parse_args()
     with threadpool_limits(1):
-        build(load_scenario(FLOE, ["rubble.enabled=false", "sheet.nodes=[12, 12]"])).macro_step()  # compiles
+        build(load_scenario(FLOE, ["rubble.enabled=false", "sheet.nodes=[16, 16]"])).macro_step()  # compiles
         floes, loads, failures, cpu = engine_run()
         end = failures["circumferential"][0]
         print(f"165 m floe, 60 x 60 nodes, to the circumferential failure. {machine()}\n")
