@@ -125,8 +125,8 @@ class Floe:
             c._sample_y.copy(),
             c._width.copy(),
             c.touching_z,
-            np.array(c._s.z),
-            np.array(c._s.r),
+            np.array(c._s.profile.z),
+            np.array(c._s.profile.r),
             law,
         )
         s = sheet.state
