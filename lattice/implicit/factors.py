@@ -94,9 +94,8 @@ class Factors:
 
     def __init__(self, grid: Grid, cells: CellStiffness, live: BoolArray, diagonal: Array, held: BoolArray):
         s = self._s = dissect(grid, cells.K.shape[1] // 4)
-        self._is_held = held[s.order]
-        self._held = np.flatnonzero(self._is_held)
-        self._panels = factorise(s, live[s.cells], cells, diagonal[s.order], self._is_held)
+        self._held = held[s.order]
+        self._panels = factorise(s, live[s.cells], cells, diagonal[s.order], self._held)
         self._work = np.empty(s.widest)
 
     def forward(self, b: Array) -> Array:
@@ -119,8 +118,7 @@ class Factors:
         """L^-1 of columns that are b (m, r) at some dof, with the way from them, and zero elsewhere."""
         at = self._s.rank[dof]
         x = np.zeros((len(way.rows), b.shape[1]))
-        x[np.searchsorted(way.rows, at)] = b
-        x[np.searchsorted(way.rows, at[self._is_held[at]])] = 0.0
+        x[np.searchsorted(way.rows, at)] = np.where(self._held[at, None], 0.0, b)
         forward_along(self._s, self._panels, way, x)
         return Columns(way.rows, x)
 

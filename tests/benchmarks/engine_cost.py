@@ -120,9 +120,9 @@ def whole_run(task: tuple[int, float]) -> dict[str, float]:
     }
 
 
-def machine() -> str:
-    """Date, processor and how busy the machine is."""
-    return f"{datetime.date.today()}, one thread; {bench.machine()}"
+def machine(threads: int = 1) -> str:
+    """Date, threads, processor and how busy the machine is."""
+    return f"{datetime.date.today()}, {('one thread', 'two threads')[threads - 1]}; {bench.machine()}"
 
 
 def apart(f, task):

@@ -166,7 +166,7 @@ def main() -> None:
     parser.add_argument("--threads", type=int, choices=(1, 2), default=1, help="of the implicit and the closing case")
     parser.add_argument("-o", "--output", type=Path, default=None, metavar="PNG", help="picture")
     options = parser.parse_args()
-    print(f"165 m floe, breaking only, {options.threads} thread(s). {machine()}")
+    print(f"165 m floe, breaking only. {machine(options.threads)}")
     found: dict[str, list[Run]] = {}
     for name in options.cases:
         print(
