@@ -47,5 +47,5 @@ def bed_rows(scene: Scene, both: tuple[Rows, Rows], found: int, before: int, cut
             set_arms(rows, c, plates, scene.edges)
             last = go_on_from(rows, c, old, last, before, cut)
             c += 1
-        bounds(scene, rows, start, c, scene.widths[s])
+        bounds(scene, rows, start, c, (scene.widths[s], 0.0))
     return c

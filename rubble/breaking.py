@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from rubble.arrays import Array
 from rubble.bending import CELLS, Ice, Loaded, judge_all
 from rubble.geometry import area_moments, clip
 from rubble.physics import RubblePhysics
-from rubble.piece import Piece, Plate, Start, prism_at
+from rubble.piece import Piece, Plate, prism_at
 from rubble.prism import Prism
 from rubble.store import Store
 
@@ -92,16 +92,9 @@ def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] 
     prisms = [p for p in parts_of(plate, axis, place, store.physics) if p]
     if len(prisms) < 2:
         return None
-    at, cut = plate.position.copy(), plate.position + plate.rotation[:, axis] * place
-    sums = store.tables.sums[plate.row].copy()
+    cut, sums = plate.position + plate.rotation[:, axis] * place, store.tables.sums[plate.row].copy()
     store.take(plate)
-    start = Start(at, plate.rows.quaternion[plate.row].copy(), plate.velocity.copy(), plate.omega.copy())
-    new = []
-    for own in prisms:
-        centre = store.make(plate.fragment, own, start, plate.flooded).position
-        moved = replace(start, velocity=start.velocity + np.cross(start.omega, centre - at))
-        new.append(store.make(plate.fragment, own, moved, plate.flooded))
-        new[-1].aligned, new[-1].sliding = plate.aligned, plate.sliding
+    new = [store.part_of(plate, own) for own in prisms]
     store.add(*new)
     store.tables.sums[new[0].row] = sums  # of the window that ends: the load of the whole plate
     lengths = [float(np.diff(p.span[axis])[0]) for p in new]

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from rubble.arrays import Array
 from rubble.compiled import compiled
 from rubble.gather import Scene
+from rubble.geometry import chord
 from rubble.rows import Rows, go_on
 
 
@@ -38,12 +40,37 @@ def go_on_from(rows: Rows, c: int, old: Rows, last: int, before: int, cut: bool)
 
 
 @compiled(nogil=True, borrows=True)
-def bounds(scene: Scene, rows: Rows, start: int, end: int, width: float) -> None:
-    """What contacts of ice of a width [m] carry until it crushes: strength times width times length, shared by them."""
-    left, right, low, high, length = np.inf, -np.inf, np.inf, -np.inf, scene.shortest
+def bounds(scene: Scene, rows: Rows, start: int, end: int, size: tuple[float, float]) -> None:
+    """What contacts of ice carry until it crushes: strength times width times length, shared by them.
+
+    ``size``: width of the piece, and length over which its outline meets the surface where it stands deepest, 0 if that
+    is not known [m]: a facet widens on both sides as it is pressed in, up to that length.
+    """
+    left, right, low, high, deep, least = np.inf, -np.inf, np.inf, -np.inf, 0.0, np.inf
     for c in range(start, end):
         point = rows.point[c]
         left, right, low, high = min(left, point.x), max(right, point.x), min(low, point.z), max(high, point.z)
-        length = max(length, 2.0 * point.depth, np.hypot(right - left, high - low))
-    for c in range(start, end):
-        rows.point[c].most = scene.strength * min(scene.pitch, width) * length / (end - start)
+        deep, least = max(deep, point.depth), min(least, point.depth)
+    if end > start:
+        extent = np.hypot(right - left, high - low)
+        length = max(scene.shortest, 2.0 * deep, extent, min(extent + 2.0 * least, size[1]))
+        for c in range(start, end):
+            rows.point[c].most = scene.strength * min(scene.pitch, size[0]) * length / (end - start)
+
+
+@compiled(nogil=True, borrows=True)
+def deepest_chord(scene: Scene, outline: Array, rows: Rows, start: int, end: int) -> float:
+    """Length over which the outline of a piece meets the surface at the deepest of its contacts, 0 without any [m]."""
+    if end == start:
+        return 0.0
+    deep = start
+    for c in range(start + 1, end):
+        if rows.point[c].depth > rows.point[deep].depth:
+            deep = c
+    point, n, k = rows.point[deep], rows.way[deep, 0], rows.point[deep].b
+    p, r, half = scene.plates.position[k], scene.plates.rotation[k], 0.5 * point.depth
+    x, y, z = point.x + half * n.x - p[0], point.y + half * n.y - p[1], point.z + half * n.z - p[2]
+    own_x, own_z = r[0, 0] * x + r[1, 0] * y + r[2, 0] * z, r[0, 2] * x + r[1, 2] * y + r[2, 2] * z
+    n_x, n_z = r[0, 0] * n.x + r[1, 0] * n.y + r[2, 0] * n.z, r[0, 2] * n.x + r[1, 2] * n.y + r[2, 2] * n.z
+    found: float = chord(outline, outline.shape[0], own_x, own_z, n_x, n_z)
+    return found

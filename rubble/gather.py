@@ -11,6 +11,7 @@ from rubble.arrays import Array, IntArray, Record, Records
 from rubble.compiled import compiled
 from rubble.cut import nearest
 from rubble.edges import Edges, deeper_on_sheet
+from rubble.geometry import chord
 from rubble.moving import Moving, aside, from_axes, turned
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, real, set_integer, short
@@ -195,10 +196,32 @@ def _lean(scene: Scene, a: int, b: int, nx: float, nz: float) -> float:
 
 
 @compiled(nogil=True, borrows=True)
+def _chord(scene: Scene, point: Record, n: Record) -> float:
+    """Length over which a slice meets the surface of the structure at a contact [m]."""
+    s = point.slot_b
+    p, r, b = scene.plates.position[point.b], scene.plates.rotation[point.b], scene.slices.anchor[s]
+    h, half = max(np.hypot(r[0, 0], r[2, 0]), 1e-12), 0.5 * point.depth
+    cos, sin, at = r[0, 0] / h, r[2, 0] / h, times(r, b[0], b[1], b[2])
+    x, z = point.x + half * n.x - p[0] - at[0], point.z + half * n.z - p[2] - at[2]
+    corners, count = scene.slices.corners[s], scene.slices.sides[s]
+    found: float = chord(
+        corners, count, cos * x + sin * z, cos * z - sin * x, cos * n.x + sin * n.z, cos * n.z - sin * n.x
+    )
+    return found
+
+
+@compiled(nogil=True, borrows=True)
 def _law(scene: Scene, rows: Rows, start: int, end: int) -> None:
-    """What the contact of a pair carries before it crushes, shared by its points."""
+    """What the contact of a pair carries before it crushes, shared by its points.
+
+    Where a corner has come off on the structure there is a facet, which widens on both sides as it is pressed in; the
+    face of a piece does not get wider.
+    """
     first, last = rows.point[start], rows.point[end - 1]
     length = np.hypot(first.x - last.x, first.z - last.z)
+    if first.kind == STRUCTURE:
+        flanks = 2.0 * min(first.depth, last.depth)
+        length = max(length, min(length + flanks, _chord(scene, first, rows.way[start, 0])))
     for c in range(start, end):  # a corner of 90 degrees is as wide as it is deep on both sides
         length = max(length, 2.0 * rows.point[c].depth)
     width = min(scene.pitch, scene.widths[first.slot_b])

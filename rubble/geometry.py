@@ -89,6 +89,21 @@ def clip(polygon: Array, nx: float, nz: float, c: float) -> Array:
     return out[:m].copy()
 
 
+@compiled(nogil=True, borrows=True)
+def chord(corners: Array, count: int, x: float, z: float, nx: float, nz: float) -> float:
+    """Length of the line through (x, z) across (nx, nz) in a convex polygon of the first ``count`` corners [m]."""
+    low, high, length = np.inf, -np.inf, max(np.hypot(nx, nz), 1e-300)
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        ax, az, bx, bz = corners[i, 0] - x, corners[i, 1] - z, corners[j, 0] - x, corners[j, 1] - z
+        p, q = nx * ax + nz * az, nx * bx + nz * bz
+        if (p <= 0.0) != (q <= 0.0):
+            s = p / (p - q)
+            at = (nx * (az + s * (bz - az)) - nz * (ax + s * (bx - ax))) / length
+            low, high = min(low, at), max(high, at)
+    return max(high - low, 0.0)
+
+
 @compiled(f"{POLYGON}({POLYGON})", nogil=True)
 def submerged(polygon: Array) -> Array:
     """The part of a convex polygon below still water, z <= 0."""

@@ -210,7 +210,7 @@ class RubbleLayer(Readings):
         """It ends."""
         self.runner.end(self.store, self.table_of_sections)
         self.runner.after(self.store, self.table_of_sections, self.time)
-        self.breaks = self.runner.break_plates(self.store)
+        self.breaks = self.runner.break_and_wear(self.store, self.crushed)
         self._clear()
 
     def set_water(self, form_drag: float, current: tuple[float, float]) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 
 from rubble.arrays import Array
 from rubble.compiled import compiled
-from rubble.corners import bounds, first_of, go_on_from
+from rubble.corners import bounds, deepest_chord, first_of, go_on_from
 from rubble.gather import Scene
 from rubble.moving import aside, from_axes, own_axes, turned
 from rubble.plates import times
@@ -237,5 +237,5 @@ def _rows_of_all(scene: Scene, both: tuple[Rows, Rows], found: int, before: int,
             set_arms(rows, c, scene.plates, scene.edges)
             last = go_on_from(rows, c, old, last, before, False)
             c += 1
-        bounds(scene, rows, start, c, scene.widths[s])
+        bounds(scene, rows, start, c, (scene.widths[s], deepest_chord(scene, outline, rows, start, c)))
     return c

@@ -120,9 +120,7 @@ class SectionTable:
                 group, corners = store.list[new.plate[i]].id + 1, new.corners[i, : new.sides[i]]
                 self._made[int(names[i])] = Slice(sections[new.section[i]], group, corners)
             numbers = np.searchsorted(names, old)
-            numbers[(numbers == len(names)) | (names[np.minimum(numbers, len(names) - 1)] != old)] = (
-                -1 if len(old) else 0
-            )
+            numbers[~np.isin(old, names)] = -1
         made = [self._made[n] for n in names.tolist()] if not same or self.changed else []
         if made or not same:
             self._shapes = np.array([address(s.shape._shape) for s in made], np.int64)

@@ -11,7 +11,7 @@ from rubble.arrays import Array, IntArray, Records, filled, rows
 from rubble.phases import AXIS
 from rubble.physics import RubblePhysics
 from rubble.piece import Piece, Plate, Start, centre_of, moved_mass, volume_of
-from rubble.plates import Plates, empty, orient_all
+from rubble.plates import Plates, empty, momenta, orient_all
 from rubble.pressure import EDGE
 from rubble.prism import Prism
 from rubble.slices import Pieces
@@ -73,6 +73,25 @@ class Store:
         weigh(plate, self.physics, self.narrow)
         self._next, self._next_piece = self._next + 1, self._next_piece + len(pieces)
         return plate
+
+    def part_of(self, plate: Plate, prisms: Sequence[tuple[Prism, Array]]) -> Plate:
+        """A plate of prisms at places (3,) in the axes of a plate of which they are a part: it moves on as it did."""
+        own = plate.rows.quaternion[plate.row].copy(), plate.velocity.copy(), plate.omega.copy()
+        part = self.make(plate.fragment, prisms, Start(plate.position.copy(), *own), plate.flooded)
+        part.velocity[:] += np.cross(plate.omega, part.position - plate.position)
+        part.aligned, part.sliding = plate.aligned, plate.sliding
+        return part
+
+    def exchange(self, plate: Plate, rest: Plate) -> None:
+        """What is left of a plate takes its place, with its number and what was summed of it in the window."""
+        rest.id, rest.thrust = plate.id, plate.thrust
+        self.list[self.list.index(plate)] = rest
+        self.lay_out()
+
+    @property
+    def carried(self) -> Array:
+        """Momentum and angular momentum about the origin (6,) of all plates with the water that moves along."""
+        return momenta(self.plates, self.plates.moved[:-1], self.plates.inertia[:-1])
 
     def next_piece(self) -> int:
         """A number for a new piece."""

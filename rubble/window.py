@@ -13,12 +13,13 @@ from rubble.edges import Edges
 from rubble.friction import coefficient
 from rubble.gather import Scene
 from rubble.joints import Joints
+from rubble.lost import Lost
 from rubble.moving import resting
 from rubble.neighbours import Neighbours, no_neighbours
 from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
-from rubble.plates import kinetic, momenta
+from rubble.plates import kinetic
 from rubble.rows import Rows, Surface, grown, room
 from rubble.sections import SectionTable
 from rubble.shore import Yields, edges_of, keep
@@ -26,6 +27,7 @@ from rubble.slots import ROUND_SLOT
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
 from rubble.water import WATER_IMPULSE, potential, water_of
+from rubble.wear import find_bites, take_off
 
 NO_BODY = np.zeros((0, 2))  #: the structure is none of revolution
 BIAS = 0.9**60.0  #: share of an overlap of ice of 3 m that is left after a second: Chipmunk's
@@ -130,19 +132,21 @@ class Runner:
         self.power_on_sheet = (float(self.books["on_sheet"][0]) - run.on_sheet) / self.window
         self._balance(store, run)
 
-    def break_plates(self, store: Store) -> list[Break]:
-        """Parts the plates that break at the end of the window; none do while initial rubble settles."""
+    def break_and_wear(self, store: Store, crushed: Lost) -> list[Break]:
+        """Parts the plates that break at the end of the window, and takes crushed ice off; not while rubble settles."""
         if self.planar:
             return []
-        breaks = []
+        rows, breaks = self._rows[int(self._counted[1]) % 2], []
+        bites = find_bites(store, rows, self.contacts, self._run.scene.slices)
         for plate, worst in self.breaking.end(store, self._run.window.loaded, self.window):
-            energy, carried = self.energy_of(plate), carried_by(store)
+            energy, carried = self.energy_of(plate), store.carried
             found = part(store, plate, worst)
             if found is not None:
                 new, told = found
                 self.broken += energy - sum(self.energy_of(p) for p in new)
-                self.momenta[SHIFT] += carried_by(store) - carried
+                self.momenta[SHIFT] += store.carried - carried
                 breaks.append(told)
+        self.momenta[SHIFT] += take_off(store, bites, self.energy_of, crushed)
         return breaks
 
     def _scene(self, store: Store, sections: SectionTable, edges: Edges) -> Scene:
@@ -235,11 +239,6 @@ class Runner:
         moving, resting = self.energies(alone)
         plate.rows, plate.row = held
         return moving, float(resting[0])
-
-
-def carried_by(store: Store) -> Array:
-    """Momentum and angular momentum about the origin (6,) of all plates with the water that moves along."""
-    return momenta(store.plates, store.plates.moved[:-1], store.plates.inertia[:-1])
 
 
 WRONG = {-1: "too many pairs in contact at once", -2: "contact with an unknown body", -3: "too many contacts at once"}

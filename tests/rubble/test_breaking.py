@@ -11,7 +11,6 @@ from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Start, prism_at
 from rubble.rig import Hinge
-from rubble.window import carried_by
 
 H, L, B, RHO_I, RHO_W, SIGMA, G = 1.0, 24.0, 4.0, 900.0, 1000.0, 100e3, 9.81
 STILL = np.zeros(3)
@@ -114,14 +113,14 @@ def test_parts_move_on_as_the_rigid_body_did(axis, place):
     number = float_plate(
         rubble, width=12.0, columns=4, velocity=np.array([0.3, -0.2, 0.1]), omega=np.array([0.02, -0.05, 0.1])
     )
-    plate, before = rubble.block(number), carried_by(rubble.store)
+    plate, before = rubble.block(number), rubble.store.carried
     mass, energy, corner = rubble.mass, rubble.runner.energies(rubble.store)[0], plate.outline.copy()
     found = part(rubble.store, plate, np.array([1.0, axis, place]))
     assert found is not None
     new, told = found
     assert [p.id for p in rubble.blocks] == [p.id for p in new]
     assert rubble.mass == pytest.approx(mass, rel=1e-14)
-    assert carried_by(rubble.store) == pytest.approx(before, rel=1e-12, abs=1e-12 * np.abs(before).max())
+    assert rubble.store.carried == pytest.approx(before, rel=1e-12, abs=1e-12 * np.abs(before).max())
     assert rubble.runner.energies(rubble.store)[0] == pytest.approx(energy, rel=1e-12)
     whole = (L, 12.0)[axis]
     assert sum(told.lengths) == pytest.approx(whole, rel=1e-12)

@@ -1,0 +1,124 @@
+"""Crushed ice comes off: corners of a piece that stand in the structure, and that nothing pushes out again.
+
+Where ice crushes the overlap stays (`rows.set_laws`). It is ice that is not there any more, so once it is thicker than
+`WORN` slops the piece is cut along the surface at the corner that stands in it, and loses mass, momentum and energy.
+Where the structure's own corner stands in a face of the ice the piece keeps its outline: the notch would not be convex.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from rubble.arrays import Array, IntArray
+from rubble.breaking import LEAST
+from rubble.geometry import area_moments, clip
+from rubble.lost import Lost
+from rubble.physics import RubblePhysics
+from rubble.piece import Piece, Plate, prism_of
+from rubble.prism import Prism
+from rubble.rows import STRUCTURE, Rows
+from rubble.slices import CORNERS, Slices
+from rubble.slots import ROUND_SLOT
+from rubble.store import Store
+
+WORN = 0.8  #: thickness of crushed ice, in slops, from which it comes off: with the slop it is in 0.9 % of h
+BY_CORNER = 2.0  #: distance of a point from a corner of the outline up to which it is that corner's, in slops
+MOST = CORNERS - 4  #: corners of an outline beyond which the least one goes with the crushed ice
+
+
+class Bite(NamedTuple):
+    """Where a piece has been crushed, in the axes of its plate."""
+
+    spot: Array  #: (3,) the point that stands in the structure [m]
+    normal: Array  #: (3,) out of the structure
+    depth: float  #: of crushed ice [m]
+
+
+def find_bites(store: Store, rows: Rows, count: int, slices: Slices) -> dict[int, list[Bite]]:
+    """Where the structure has crushed pieces, by the number of the piece; from the rows of the last sub-step."""
+    point, n, slop = rows.point[:count], rows.way[:count, 0], store.physics.slop
+    found: dict[int, list[Bite]] = {}
+    for c in np.flatnonzero((point["kind"] == STRUCTURE) & (point["met"] > WORN * slop)).tolist():
+        piece = _piece_of(store, slices, int(point["slot_a"][c]), int(point["slot_b"][c]))
+        if piece < 0:
+            continue
+        normal = np.array([n[axis][c] for axis in "xyz"])
+        spot = np.array([point[axis][c] for axis in "xyz"]) - 0.5 * point["depth"][c] * normal
+        plate = store.list[int(store.tables.pieces.plate[piece])]
+        bite = Bite((spot - plate.position) @ plate.rotation, normal @ plate.rotation, float(point["met"][c]))
+        found.setdefault(int(store.tables.pieces.number[piece]), []).append(bite)
+    return found
+
+
+def _piece_of(store: Store, slices: Slices, slot_a: int, slot_b: int) -> int:
+    """Row of the piece that a contact with the structure belongs to; -1 if it has gone."""
+    numbers: IntArray = store.tables.pieces.number
+    if slot_a != ROUND_SLOT:
+        return int(slices.piece[slot_b])
+    at = np.flatnonzero(numbers == slot_b)
+    return int(at[0]) if len(at) else -1
+
+
+def take_off(store: Store, found: dict[int, list[Bite]], energy_of: Callable[[Plate], float], crushed: Lost) -> Array:
+    """Takes crushed ice off; returns by how much what plates carry has changed, see `Store.carried`.
+
+    A piece that has gone in the meantime is none of them.
+    """
+    before = store.carried
+    for plate in [p for p in store.list if any(piece.number in found for piece in p.pieces)]:
+        left = _worn(plate, found, store.physics)
+        if left is None:
+            continue
+        energy, momentum = energy_of(plate), plate.momentum
+        rest = store.part_of(plate, left) if left else None
+        if rest is None:
+            store.take(plate)
+            crushed.take(plate.mass, momentum, energy)
+            continue
+        store.exchange(plate, rest)
+        crushed.take(plate.mass - rest.mass, momentum - rest.momentum, energy - energy_of(rest))
+    return store.carried - before
+
+
+def _worn(plate: Plate, found: dict[int, list[Bite]], physics: RubblePhysics) -> list[tuple[Prism, Array]] | None:
+    """What is left of the pieces of a plate, with their places (3,) in its axes; None if all of it is."""
+    left, changed = [], False
+    for piece in plate.pieces:
+        rest = _bitten(piece, found.get(piece.number, ()), physics.slop)
+        changed = changed or rest is not None
+        if rest is None:
+            left.append((piece.prism, piece.centre))
+        elif len(rest[0]) >= 3 and rest[2].min() > 0.0 and area_moments(rest[0]).area >= LEAST * physics.thickness**2:
+            left.append(prism_of(rest[0], rest[1], piece.prism.cuts + piece.centre[0], rest[2], physics.rho_i))
+    return left if changed else None
+
+
+def _bitten(piece: Piece, found: Sequence[Bite], slop: float) -> tuple[Array, float, Array] | None:
+    """Outline (k, 2), y of the middle and widths (s,) without what was crushed; None if it stays as it is."""
+    outline, y = piece.prism.polygon + piece.centre[::2], float(piece.centre[1])
+    widths, whole, changed = piece.prism.widths, outline, False
+    for bite in found:
+        x, z = bite.spot[::2]
+        if np.hypot(*(whole - bite.spot[::2]).T).min() > BY_CORNER * slop:
+            continue
+        nx, ny, nz = bite.normal
+        if np.hypot(nx, nz) >= abs(ny):
+            outline = clip(outline, -nx, -nz, -(nx * x + nz * z + bite.depth))
+        else:  # its side stands in the structure
+            widths, y = widths - bite.depth / abs(ny), y + 0.5 * bite.depth / ny
+        changed = True
+        if len(outline) < 3 or not (widths > 0.0).all():
+            break
+    return (_fewer(outline), y, widths) if changed else None
+
+
+def _fewer(outline: Array) -> Array:
+    """The same with at most `MOST` corners: those go that take least ice along."""
+    while len(outline) > MOST:
+        before, after = np.roll(outline, 1, axis=0) - outline, np.roll(outline, -1, axis=0) - outline
+        lost = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        outline = np.delete(outline, int(np.argmin(lost)), axis=0)
+    return np.ascontiguousarray(outline)
