@@ -98,10 +98,20 @@ def speed_of_structure(moving: Moving, point: Record, way: Record) -> float:
     return float(x * way.x + y * way.y + z * way.z)
 
 
+@compiled(nogil=True)
+def in_axes(moving: Moving, y: float, outline: Array, back: bool) -> Array:
+    """An outline (k, 2) of the plane y in the structure's axes, or back from them."""
+    out = np.empty_like(outline)
+    for i in range(outline.shape[0]):
+        x, z = outline[i, 0], outline[i, 1]
+        out[i, 0], out[i, 1] = from_axes(moving, y, x, z) if back else own_axes(moving, y, x, z)
+    return out
+
+
 def moved_cut(trim: Callable[[Array], Array], moving: Moving, y: float, polygon: Array) -> Array:
     """What ``trim`` leaves of an outline (k, 2) in the plane y, where the structure has moved."""
-    own = np.array([own_axes(moving, y, float(x), float(z)) for x, z in polygon])
+    own = in_axes(moving, y, np.ascontiguousarray(polygon), False)
     kept = trim(own)
     if kept.shape == own.shape and np.array_equal(kept, own):
         return polygon
-    return np.array([from_axes(moving, y, float(x), float(z)) for x, z in kept]).reshape(-1, 2)
+    return in_axes(moving, y, np.ascontiguousarray(kept), True)
