@@ -114,4 +114,5 @@ def moved_cut(trim: Callable[[Array], Array], moving: Moving, y: float, polygon:
     kept = trim(own)
     if kept.shape == own.shape and np.array_equal(kept, own):
         return polygon
-    return in_axes(moving, y, np.ascontiguousarray(kept), True)
+    out: Array = in_axes(moving, y, np.ascontiguousarray(kept), True)
+    return out
