@@ -106,8 +106,8 @@ def judge(k: int, row: int, plates: Plates, pieces: Pieces, loaded: Loaded, time
     """
     load = loaded.impulse[row] / time
     count = 0
-    for i in range(pieces.plate.shape[0]):
-        count += CELLS * _across(pieces.width[i], loaded.span[row]) if pieces.plate[i] == k else 0
+    for i in range(*_pieces_of(k, pieces)):
+        count += CELLS * _across(pieces.width[i], loaded.span[row])
     cells = np.zeros((count, 4))  # x, y, mass, normal load
     width = np.zeros((2, CELLS + 1))
     _weigh(k, plates, pieces, loaded.span[row], ice, cells, width)
@@ -147,9 +147,7 @@ def _weigh(k: int, plates: Plates, pieces: Pieces, span: Array, ice: Ice, cells:
     """Cells of plate k (c, 4): x, y, mass, and load of water and weight along its normal; widths at the stations."""
     r, p, share = plates.rotation[k], plates.position[k], plates.flooded[k]
     up, half, n = r[2, 2], 0.5 * ice.thickness, 0
-    for i in range(pieces.plate.shape[0]):
-        if pieces.plate[i] != k:
-            continue
+    for i in range(*_pieces_of(k, pieces)):
         first, end = pieces.offset[i], pieces.offset[i + 1]
         corners = pieces.corners[first:end]
         rear, front = corners[:, 0].min(), corners[:, 0].max()
@@ -171,6 +169,12 @@ def _weigh(k: int, plates: Plates, pieces: Pieces, span: Array, ice: Ice, cells:
                 load = (share * below - above if up < 0.0 else below - share * above) * plan
                 cells[n, 0], cells[n, 1], cells[n, 2], cells[n, 3] = x, y, mass, load - mass * ice.g * up
                 n += 1
+
+
+@compiled(nogil=True)
+def _pieces_of(k: int, pieces: Pieces) -> tuple[int, int]:
+    """Where the pieces of plate k begin and end: they stand in the order of the plates."""
+    return int(np.searchsorted(pieces.plate, k)), int(np.searchsorted(pieces.plate, k + 1))
 
 
 @compiled(nogil=True)

@@ -84,7 +84,7 @@ def _cut_y(piece: Piece, place: float) -> list[tuple[Array, float, float]]:
 
 
 def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] | None:
-    """The two plates that take the place of one, and what is told of it; None if it cannot be cut there.
+    """The two plates that are to take the place of one, and what is told of it; None if it cannot be cut there.
 
     ``worst`` as `bending.judge` gives it. Each part moves on as the part of a rigid body that it is.
     """
@@ -92,11 +92,7 @@ def part(store: Store, plate: Plate, worst: Array) -> tuple[list[Plate], Break] 
     prisms = [p for p in parts_of(plate, axis, place, store.physics) if p]
     if len(prisms) < 2:
         return None
-    cut, sums = plate.position + plate.rotation[:, axis] * place, store.tables.sums[plate.row].copy()
-    store.take(plate)
-    new = [store.part_of(plate, own) for own in prisms]
-    store.add(*new)
-    store.tables.sums[new[0].row] = sums  # of the window that ends: the load of the whole plate
+    new, cut = [store.part_of(plate, own) for own in prisms], plate.position + plate.rotation[:, axis] * place
     lengths = [float(np.diff(p.span[axis])[0]) for p in new]
     areas = [plan_area(own, store.physics.thickness) for own in prisms]
     return new, Break(cut, (lengths[0], lengths[1]), (areas[0], areas[1]), stress)

@@ -9,7 +9,7 @@ from math import cos, sin
 
 import numpy as np
 
-from rubble.arrays import Array
+from rubble.arrays import Array, Records, rows
 from rubble.geometry import area_moments, contiguous, is_convex, place
 from rubble.physics import RubblePhysics
 from rubble.plates import Plates
@@ -35,6 +35,18 @@ class Piece:
     number: int  #: never reused
     prism: Prism
     centre: Array  #: (3,) of its mass, in the plate's axes from the plate's centre [m]
+
+    @cached_property
+    def corners(self) -> Array:
+        """(k, 2) of its outline, counter-clockwise, in the plate's axes [m]."""
+        return self.prism.polygon + self.centre[::2]
+
+    @cached_property
+    def edges(self) -> Records:
+        """(e,) wetted edges of its prism, in the plate's axes."""
+        out = self.prism.edges.copy()
+        rows(out, "x0", 4)[:] += [self.centre[0], self.centre[2], self.centre[0], self.centre[2]]
+        return out
 
 
 @dataclass(frozen=True)
@@ -94,7 +106,7 @@ class Plate:
         """Part of its head of water that the top carries."""
         return float(self.rows.flooded[self.row])
 
-    @property
+    @cached_property
     def width(self) -> float:
         """Mean extent along its y axis [m]."""
         area = sum(p.prism.area for p in self.pieces) / len(self.pieces)
@@ -119,9 +131,14 @@ class Plate:
         return np.array([(x.min(), x.max()), (np.min(y), np.max(y))])
 
     @cached_property
+    def middle_piece(self) -> Piece:
+        """The piece nearest to its x axis."""
+        return min(self.pieces, key=lambda p: abs(p.centre[1]))
+
+    @cached_property
     def middle(self) -> Array:
         """(k, 3) corners of the outline of its middle piece, in its axes [m]."""
-        piece = min(self.pieces, key=lambda p: abs(p.centre[1]))
+        piece = self.middle_piece
         corners: Array = np.insert(piece.prism.polygon, 1, 0.0, axis=1) + piece.centre
         return corners
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray, Records, filled, rows
+from rubble.arrays import Array, IntArray, Records, filled
 from rubble.phases import AXIS
 from rubble.physics import RubblePhysics
 from rubble.piece import Piece, Plate, Start, centre_of, moved_mass, volume_of
@@ -82,11 +82,15 @@ class Store:
         part.aligned, part.sliding = plate.aligned, plate.sliding
         return part
 
-    def exchange(self, plate: Plate, rest: Plate) -> None:
-        """What is left of a plate takes its place, with its number and what was summed of it in the window."""
-        rest.id, rest.thrust = plate.id, plate.thrust
-        self.list[self.list.index(plate)] = rest
+    def replace(self, pairs: Sequence[tuple[Plate, Sequence[Plate]]]) -> None:
+        """Others take the place of plates; the first of them has what was summed of the plate in the window."""
+        sums = [self.tables.sums[plate.row].copy() for plate, _ in pairs]
+        self._take_out([plate for plate, _ in pairs])
+        self.list = sorted([*self.list, *(new for _, others in pairs for new in others)], key=lambda p: p.id)
         self.lay_out()
+        for (_, others), own in zip(pairs, sums, strict=True):
+            if others:
+                self.tables.sums[others[0].row] = own
 
     @property
     def carried(self) -> Array:
@@ -105,13 +109,16 @@ class Store:
 
     def take(self, *plates: Plate) -> None:
         """Take out plates; they keep their motion."""
+        self._take_out(plates)
+        self.lay_out()
+
+    def _take_out(self, plates: Sequence[Plate]) -> None:
         for plate in plates:
             own = empty(1)
             _copy(plate.rows, plate.row, own, 0)
             plate.rows, plate.row = own, 0
         out = {id(p) for p in plates}
         self.list = [p for p in self.list if id(p) not in out]
-        self.lay_out()
 
     def lay_out(self) -> None:
         """Tables anew; the plates move into them with what was summed of each."""
@@ -151,7 +158,7 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
     owner = np.array([i for i, _ in pieces], np.int64)
     y = np.array([p.centre[1] for _, p in pieces], np.float64)
     width = np.array([p.prism.width for _, p in pieces], np.float64)
-    corners = [p.prism.polygon + p.centre[::2] for _, p in pieces]
+    corners = [p.corners for _, p in pieces]
     return Tables(
         pieces=Pieces(
             np.array([p.number for _, p in pieces], np.int64),
@@ -185,7 +192,7 @@ def _told(plates: Sequence[Plate]) -> Told:
 def _hulls(
     plates: Sequence[Plate], pieces: Sequence[tuple[int, Piece]], owner: IntArray, y: Array, width: Array, g: float
 ) -> Hulls:
-    edges = [_moved(p.prism.edges, p.centre) for _, p in pieces]
+    edges = [p.edges for _, p in pieces]
     alone = np.array([len(plates[i].pieces) for i, _ in pieces], np.float64)
     force = np.array([p.thrust[:3] - [0.0, 0.0, p.mass * g] for p in plates]).reshape(-1, 3)
     return Hulls(
@@ -199,16 +206,10 @@ def _hulls(
     )
 
 
-def _moved(edges: Records, centre: Array) -> Records:
-    out = edges.copy()
-    rows(out, "x0", 4)[:] += [centre[0], centre[2], centre[0], centre[2]]
-    return out
-
-
 def _axes(plates: Sequence[Plate], thickness: float) -> Records:
     """A plate counts as next to a slope within its own reach and one thickness; its axis is that of a middle piece."""
     found = []
     for plate in plates:
-        prism = min(plate.pieces, key=lambda p: abs(p.centre[1])).prism
+        prism = plate.middle_piece.prism
         found.append((prism.reach + thickness, prism.long_axis, np.pi if prism.slender else np.pi / 2))
     return filled(AXIS, found)

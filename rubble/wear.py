@@ -67,19 +67,21 @@ def take_off(store: Store, found: dict[int, list[Bite]], energy_of: Callable[[Pl
 
     A piece that has gone in the meantime is none of them.
     """
-    before = store.carried
-    for plate in [p for p in store.list if any(piece.number in found for piece in p.pieces)]:
+    pairs: list[tuple[Plate, list[Plate]]] = []
+    for plate in [p for p in store.list if any(piece.number in found for piece in p.pieces)] if found else []:
         left = _worn(plate, found, store.physics)
         if left is None:
             continue
-        energy, momentum = energy_of(plate), plate.momentum
-        rest = store.part_of(plate, left) if left else None
-        if rest is None:
-            store.take(plate)
-            crushed.take(plate.mass, momentum, energy)
-            continue
-        store.exchange(plate, rest)
-        crushed.take(plate.mass - rest.mass, momentum - rest.momentum, energy - energy_of(rest))
+        rest = [store.part_of(plate, left)] if left else []
+        for new in rest:
+            new.id, new.thrust = plate.id, plate.thrust
+        mass, momentum, energy = sum(p.mass for p in rest), sum(p.momentum for p in rest), sum(map(energy_of, rest))
+        crushed.take(plate.mass - mass, plate.momentum - momentum, energy_of(plate) - energy)
+        pairs.append((plate, rest))
+    if not pairs:
+        return np.zeros(6)
+    before = store.carried
+    store.replace(pairs)
     return store.carried - before
 
 

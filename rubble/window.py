@@ -136,16 +136,19 @@ class Runner:
         """Parts the plates that break at the end of the window, and takes crushed ice off; not while rubble settles."""
         if self.planar:
             return []
-        rows, breaks = self._rows[int(self._counted[1]) % 2], []
+        rows, breaks = self._rows[int(self._counted[1]) % 2], list[Break]()
         bites = find_bites(store, rows, self.contacts, self._run.scene.slices)
+        pairs: list[tuple[Plate, list[Plate]]] = []
         for plate, worst in self.breaking.end(store, self._run.window.loaded, self.window):
-            energy, carried = self.energy_of(plate), store.carried
             found = part(store, plate, worst)
             if found is not None:
-                new, told = found
-                self.broken += energy - sum(self.energy_of(p) for p in new)
-                self.momenta[SHIFT] += store.carried - carried
-                breaks.append(told)
+                pairs.append((plate, found[0]))
+                breaks.append(found[1])
+                self.broken += self.energy_of(plate) - sum(self.energy_of(p) for p in found[0])
+        if pairs:
+            carried = store.carried
+            store.replace(pairs)
+            self.momenta[SHIFT] += store.carried - carried
         self.momenta[SHIFT] += take_off(store, bites, self.energy_of, crushed)
         return breaks
 
