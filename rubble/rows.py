@@ -27,13 +27,13 @@ HOLDS = -1.0  #: coefficient of a row that holds whatever pulls at it
 
 
 #: point x, y, z [m]; coefficient of friction; depth of overlap [m]; greatest normal impulse, impulse of the shift [N s]
-#: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left, and overlap beyond it,
-#: which is to be taken out [m]; plates a and b; section whose sheet is end a, else -1; kind, see above; slices a and b,
-#: and which point of theirs it is; whether it crushed in the sub-step before, and whether it is found anew; of a sheet
-#: the nodes before and behind the point, the weight of the one before, and the height of the line of nodes over the
-#: point by their distance
+#: and the speed that it goes for [m/s]; overlap at which the pair has met, as far as it is left, what of it is crushed
+#: ice, and overlap beyond it, which is to be taken out [m]; of a sheet the weight of the node before the point, and the
+#: height of the line of nodes over the point by their distance; plates a and b; section whose sheet is end a, else -1;
+#: kind, see above; slices a and b, and which point of theirs it is; whether it crushed in the sub-step before, and
+#: whether it is found anew; of a sheet the nodes before and behind the point
 POINT = record(
-    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met", "owed", "weight", "lever"),
+    *("x", "y", "z", "mu", "depth", "most", "shift", "shift_speed", "met", "crushed", "owed", "weight", "lever"),
     integers=("a", "b", "edge", "kind", "slot_a", "slot_b", "feature", "crushes", "anew", "front", "rear"),
 )
 #: one direction of a row: unit vector; arms at a and at b times it [m], and times the inverse inertia; mass that a unit
@@ -91,10 +91,10 @@ def go_on(rows: Rows, c: int, old: Rows, at: int, owed: float, cut: bool) -> Non
     A point is found anew where it is new, where the slices have been ``cut`` anew and where its normal is another one.
     """
     own, n = rows.point[c], rows.way[c, 0]
-    own.owed, own.anew, own.crushes = owed, 1, 0
+    own.owed, own.crushed, own.anew, own.crushes = owed, 0.0, 1, 0
     if at >= 0:
         was, m = old.point[at], old.way[at, 0]
-        own.met, own.owed = was.met, was.owed
+        own.met, own.crushed, own.owed = was.met, was.crushed, was.owed
         own.crushes = 1 if max(m.impulse, was.shift) >= CRUSHES * was.most else 0
         own.anew = 1 if cut or n.x * m.x + n.y * m.y + n.z * m.z < SAME_WAY else 0
     for d in range(3):
@@ -189,6 +189,9 @@ def set_laws(rows: Rows, count: int, plates: Plates, edges: Edges, moving: Movin
         if point.anew:
             both = u + speed(n, plates.shift[point.a], plates.shift[point.b])
             point.met = max(over - point.owed - dt * max(-both, 0.0), 0.0)
-        point.met = over if point.crushes else min(point.met, over)
+        if point.crushes:
+            point.crushed, point.met = point.crushed + max(over - point.met, 0.0), over
+        point.met = min(point.met, over)
+        point.crushed = min(point.crushed, point.met)
         point.owed = over - point.met
         point.shift_speed = surface.bias * point.owed / dt

@@ -2,7 +2,8 @@
 
 Where ice crushes the overlap stays (`rows.set_laws`). It is ice that is not there any more, so once it is thicker than
 `WORN` slops the piece is cut along the surface at the corner that stands in it, and loses mass, momentum and energy.
-Where the structure's own corner stands in a face of the ice the piece keeps its outline: the notch would not be convex.
+Overlap that was found, without crushing, is an error of place and no ice lost: it stays. Where the structure's own
+corner stands in a face of the ice the piece keeps its outline: the notch would not be convex.
 """
 
 from __future__ import annotations
@@ -39,16 +40,18 @@ class Bite(NamedTuple):
 
 def find_bites(store: Store, rows: Rows, count: int, slices: Slices) -> dict[int, list[Bite]]:
     """Where the structure has crushed pieces, by the number of the piece; from the rows of the last sub-step."""
-    point, n, slop = rows.point[:count], rows.way[:count, 0], store.physics.slop
+    point, n, least = rows.point[:count], rows.way[:count, 0], WORN * store.physics.slop
     found: dict[int, list[Bite]] = {}
-    for c in np.flatnonzero((point["kind"] == STRUCTURE) & (point["met"] > WORN * slop)).tolist():
+    deep = (point["kind"] == STRUCTURE) & (point["crushed"] > 0.0) & (point["met"] > least)
+    for c in np.flatnonzero(deep).tolist():
         piece = _piece_of(store, slices, int(point["slot_a"][c]), int(point["slot_b"][c]))
         if piece < 0:
             continue
         normal = np.array([n[axis][c] for axis in "xyz"])
         spot = np.array([point[axis][c] for axis in "xyz"]) - 0.5 * point["depth"][c] * normal
         plate = store.list[int(store.tables.pieces.plate[piece])]
-        bite = Bite((spot - plate.position) @ plate.rotation, normal @ plate.rotation, float(point["met"][c]))
+        depth = min(float(point["met"][c]), float(point["crushed"][c]) + least)
+        bite = Bite((spot - plate.position) @ plate.rotation, normal @ plate.rotation, depth)
         found.setdefault(int(store.tables.pieces.number[piece]), []).append(bite)
     return found
 

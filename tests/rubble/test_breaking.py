@@ -118,6 +118,7 @@ def test_parts_move_on_as_the_rigid_body_did(axis, place):
     found = part(rubble.store, plate, np.array([1.0, axis, place]))
     assert found is not None
     new, told = found
+    rubble.store.replace([(plate, new)])
     assert [p.id for p in rubble.blocks] == [p.id for p in new]
     assert rubble.mass == pytest.approx(mass, rel=1e-14)
     assert rubble.store.carried == pytest.approx(before, rel=1e-12, abs=1e-12 * np.abs(before).max())
