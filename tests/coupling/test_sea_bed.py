@@ -8,7 +8,7 @@ from cosim.scenario.loading import load_scenario
 from coupling.budget import force_budget
 
 #: the campaign's floe on a coarse mesh, over a pile that reaches down to the bed
-CASE = ["sheet.nodes=[26,26]", "rubble.initial_volume='800 m^3'", "water.depth='9 m'", "drift.velocity='0.5 m/s'"]
+CASE = ["sheet.nodes=[26,26]", "rubble.initial_volume='800 m^3'", "water.depth='7 m'", "drift.velocity='0.5 m/s'"]
 
 
 def test_only_who_has_a_bed_has_the_term():
