@@ -116,11 +116,17 @@ def _find(scene: Scene, pieces: Pieces, thickness: float, banks: Banks, room: Ro
 
 @compiled(nogil=True, borrows=True)
 def _cut(scene: Scene, s: int, e: int) -> bool:
-    """Whether the plane of section e cuts the plate of slice s: its contact with the sheet is found there."""
+    """Whether the plane of section e cuts the plate of slice s: its contact with the sheet is found there.
+
+    Pieces of a plate have numbers one after the other, so its slices stand side by side.
+    """
     slices = scene.slices
-    for other in range(slices.section.shape[0]):
-        if slices.section[other] == e and slices.plate[other] == slices.plate[s]:
-            return True
+    for step in (-1, 1):
+        other = s
+        while 0 <= other < slices.section.shape[0] and slices.plate[other] == slices.plate[s]:
+            if slices.section[other] == e:
+                return True
+            other += step
     return False
 
 
