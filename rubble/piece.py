@@ -35,6 +35,7 @@ class Piece:
     number: int  #: never reused
     prism: Prism
     centre: Array  #: (3,) of its mass, in the plate's axes from the plate's centre [m]
+    worn: int = 0  #: how often crushed ice has come off it
 
     @cached_property
     def corners(self) -> Array:

@@ -29,6 +29,7 @@ from rubble.slices import CORNERS
 from rubble.slots import ROUND_SLOT
 
 SPOT, DEPTH = 6, 3  #: numbers of a `Spot`, and which of them is its depth
+FEATURES = 4096  #: more than an outline has
 AXIS = 1e-9  #: distance from the axis below which a point has no bearing, in radii
 
 
@@ -200,7 +201,7 @@ def round_rows(scene: Scene, rows: Rows, old: Rows, found: int, before: int) -> 
     """Adds the contacts of pieces with the body of revolution; returns the number of rows, -1 if there is no room.
 
     ``old`` has ``before`` rows. A contact goes on over new slices, since it depends on the piece alone; it stands under
-    the piece's number.
+    the piece's number; the features of an outline that has worn are other ones.
     """
     if scene.body.shape[0] == 0:
         return found
@@ -233,7 +234,8 @@ def _rows_of_all(scene: Scene, both: tuple[Rows, Rows], found: int, before: int,
                 continue
             point = rows.point[c]
             point.a, point.b, point.edge, point.kind = scene.plates.moved.shape[0] - 1, slices.plate[s], -1, STRUCTURE
-            point.slot_a, point.slot_b, point.feature = ROUND_SLOT, pieces.number[piece], feature
+            point.slot_a, point.slot_b = ROUND_SLOT, pieces.number[piece]
+            point.feature = FEATURES * pieces.worn[piece] + feature
             set_arms(rows, c, scene.plates, scene.edges)
             last = go_on_from(rows, c, old, last, before, False)
             c += 1

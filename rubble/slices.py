@@ -29,6 +29,7 @@ class Pieces(NamedTuple):
     """Prisms of which plates are made, in the axes of their plate."""
 
     number: IntArray  #: (p,) never reused
+    worn: IntArray  #: (p,) how often crushed ice has come off: the outline is another one each time
     plate: IntArray  #: (p,) row of the plate
     y: Array  #: (p,) of the middle [m]
     width: Array  #: (p,) along y [m]

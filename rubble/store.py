@@ -63,7 +63,7 @@ class Store:
     def make(self, fragment: int, prisms: Sequence[tuple[Prism, Array]], start: Start, flooded: float) -> Plate:
         """A plate of prisms at places (3,) in its axes; it has a number, and belongs to nobody yet."""
         mass, centre, spin = centre_of(prisms)
-        pieces = [Piece(self._next_piece + k, prism, at - centre) for k, (prism, at) in enumerate(prisms)]
+        pieces = [Piece(k, prism, at - centre) for k, (prism, at) in enumerate(prisms, self._next_piece)]
         own = empty(1)
         own.quaternion[0], own.flooded[0] = start.quaternion, flooded
         orient_all(own)
@@ -96,11 +96,6 @@ class Store:
     def carried(self) -> Array:
         """Momentum and angular momentum about the origin (6,) of all plates with the water that moves along."""
         return momenta(self.plates, self.plates.moved[:-1], self.plates.inertia[:-1])
-
-    def next_piece(self) -> int:
-        """A number for a new piece."""
-        self._next_piece += 1
-        return self._next_piece - 1
 
     def add(self, *plates: Plate) -> None:
         """Take in plates."""
@@ -162,6 +157,7 @@ def _tables(plates: Sequence[Plate], physics: RubblePhysics) -> Tables:
     return Tables(
         pieces=Pieces(
             np.array([p.number for _, p in pieces], np.int64),
+            np.array([p.worn for _, p in pieces], np.int64),
             owner,
             y,
             width,

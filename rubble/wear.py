@@ -27,7 +27,11 @@ from rubble.store import Store
 
 WORN = 0.8  #: thickness of crushed ice, in slops, from which it comes off: with the slop it is in 0.9 % of h
 BY_CORNER = 2.0  #: distance of a point from a corner of the outline up to which it is that corner's, in slops
+TINY = 1e-5  #: area that a corner takes along, in thicknesses squared, below which it goes with the crushed ice
 MOST = CORNERS - 4  #: corners of an outline beyond which the least one goes with the crushed ice
+
+
+Left = tuple[Piece, tuple[Prism, Array] | None]
 
 
 class Bite(NamedTuple):
@@ -73,14 +77,12 @@ def take_off(store: Store, found: dict[int, list[Bite]], energy_of: Callable[[Pl
     pairs: list[tuple[Plate, list[Plate]]] = []
     for plate in [p for p in store.list if any(piece.number in found for piece in p.pieces)] if found else []:
         left = _worn(plate, found, store.physics)
-        if left is None:
+        if all(rest is None for _, rest in left) and len(left) == len(plate.pieces):
             continue
-        rest = [store.part_of(plate, left)] if left else []
-        for new in rest:
-            new.id, new.thrust = plate.id, plate.thrust
-        mass, momentum, energy = sum(p.mass for p in rest), sum(p.momentum for p in rest), sum(map(energy_of, rest))
+        new = [_rest(store, plate, left)] if left else []
+        mass, momentum, energy = sum(p.mass for p in new), sum(p.momentum for p in new), sum(map(energy_of, new))
         crushed.take(plate.mass - mass, plate.momentum - momentum, energy_of(plate) - energy)
-        pairs.append((plate, rest))
+        pairs.append((plate, new))
     if not pairs:
         return np.zeros(6)
     before = store.carried
@@ -88,20 +90,28 @@ def take_off(store: Store, found: dict[int, list[Bite]], energy_of: Callable[[Pl
     return store.carried - before
 
 
-def _worn(plate: Plate, found: dict[int, list[Bite]], physics: RubblePhysics) -> list[tuple[Prism, Array]] | None:
-    """What is left of the pieces of a plate, with their places (3,) in its axes; None if all of it is."""
-    left, changed = [], False
+def _worn(plate: Plate, found: dict[int, list[Bite]], physics: RubblePhysics) -> list[Left]:
+    """Pieces of a plate of which something is left, with the prism that it is now, None if it has lost nothing."""
+    left: list[Left] = []
     for piece in plate.pieces:
-        rest = _bitten(piece, found.get(piece.number, ()), physics.slop)
-        changed = changed or rest is not None
+        rest = _bitten(piece, found.get(piece.number, ()), physics.slop, physics.thickness)
         if rest is None:
-            left.append((piece.prism, piece.centre))
+            left.append((piece, None))
         elif len(rest[0]) >= 3 and rest[2].min() > 0.0 and area_moments(rest[0]).area >= LEAST * physics.thickness**2:
-            left.append(prism_of(rest[0], rest[1], piece.prism.cuts + piece.centre[0], rest[2], physics.rho_i))
-    return left if changed else None
+            left.append((piece, prism_of(rest[0], rest[1], piece.prism.cuts + piece.centre[0], rest[2], physics.rho_i)))
+    return left
 
 
-def _bitten(piece: Piece, found: Sequence[Bite], slop: float) -> tuple[Array, float, Array] | None:
+def _rest(store: Store, plate: Plate, left: Sequence[Left]) -> Plate:
+    """What is left of a plate: it and its pieces keep their numbers, so that their contacts go on."""
+    rest = store.part_of(plate, [(p.prism, p.centre) if new is None else new for p, new in left])
+    rest.id, rest.thrust = plate.id, plate.thrust
+    for own, (piece, new) in zip(rest.pieces, left, strict=True):
+        own.number, own.worn = piece.number, piece.worn + (new is not None)
+    return rest
+
+
+def _bitten(piece: Piece, found: Sequence[Bite], slop: float, thickness: float) -> tuple[Array, float, Array] | None:
     """Outline (k, 2), y of the middle and widths (s,) without what was crushed; None if it stays as it is."""
     outline, y = piece.prism.polygon + piece.centre[::2], float(piece.centre[1])
     widths, whole, changed = piece.prism.widths, outline, False
@@ -117,13 +127,19 @@ def _bitten(piece: Piece, found: Sequence[Bite], slop: float) -> tuple[Array, fl
         changed = True
         if len(outline) < 3 or not (widths > 0.0).all():
             break
-    return (_fewer(outline), y, widths) if changed else None
+    return (_fewer(outline, TINY * thickness**2), y, widths) if changed else None
 
 
-def _fewer(outline: Array) -> Array:
-    """The same with at most `MOST` corners: those go that take least ice along."""
-    while len(outline) > MOST:
+def _fewer(outline: Array, tiny: float) -> Array:
+    """The same without corners that take less ice along than an area, and with at most `MOST`.
+
+    Cuts one after the other leave corners within rounding of each other, between which an edge has no direction.
+    """
+    while len(outline) > 3:
         before, after = np.roll(outline, 1, axis=0) - outline, np.roll(outline, -1, axis=0) - outline
-        lost = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
-        outline = np.delete(outline, int(np.argmin(lost)), axis=0)
+        lost = 0.5 * np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0])
+        least = int(np.argmin(lost))
+        if lost[least] >= tiny and len(outline) <= MOST:
+            break
+        outline = np.delete(outline, least, axis=0)
     return np.ascontiguousarray(outline)
