@@ -7,7 +7,7 @@ numbers of a row stand side by side in memory, as pymunk's callbacks need it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,3 +63,19 @@ def filled_room(room: Callable[[int], Table], count: int, fill: Callable[[Table]
         if found <= count:
             return type(table)(*(column[:found] for column in table))
         count = 2 * found
+
+
+class Known(NamedTuple):
+    """Rows that are remembered by number."""
+
+    ids: IntArray  #: (n,) ascending
+    values: Array  #: (n, ...)
+
+    def of(self, ids: IntArray, missing: float) -> Array:
+        """The rows of some numbers (m, ...), filled with ``missing`` where one is not known."""
+        out = np.full((len(ids), *self.values.shape[1:]), missing)
+        if len(self.ids):
+            at = np.minimum(np.searchsorted(self.ids, ids), len(self.ids) - 1)
+            hit = self.ids[at] == ids
+            out[hit] = self.values[at[hit]]
+        return out

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rubble.arrays import Array
+from rubble.arrays import Array, Known
 from rubble.bending import CELLS, Ice, Loaded, judge_all
 from rubble.geometry import area_moments, clip
 from rubble.physics import RubblePhysics
@@ -35,7 +35,9 @@ class Breaking:
     def __init__(self, physics: RubblePhysics) -> None:
         p = self.physics = physics
         self.ice = Ice(p.rho_i, p.thickness, p.flexural_strength, p.g, p.rho_w * p.g)
-        self._known: dict[int, tuple[float, Array]] = {}  #: time and impulses, by the number of the plate
+        none = np.zeros(0, np.int64)
+        self._time = Known(none, np.zeros(0))  #: over which loads have been summed, by the number of the plate [s]
+        self._loads = Known(none, np.zeros((0, 2, CELLS + 1, 3)))  #: the impulses
 
     def begin(self, store: Store) -> Loaded:
         """Plates that may break, with what has been summed of their loads."""
@@ -43,21 +45,17 @@ class Breaking:
         long = (span[..., 1] - span[..., 0]).max(axis=1) >= SHORTEST * self.ice.thickness
         found = np.flatnonzero(long & np.isfinite(self.ice.strength))
         row[found] = np.arange(len(found))
-        none = 0.0, np.zeros((2, CELLS + 1, 3))
-        loads = [self._known.get(store.list[i].id, none)[1] for i in found.tolist()]
-        return Loaded(row, span[found], np.array(loads).reshape(-1, 2, CELLS + 1, 3))
+        return Loaded(row, span[found], self._loads.of(store.tables.told.ids[found], 0.0))
 
     def end(self, store: Store, loaded: Loaded, window: float) -> list[tuple[Plate, Array]]:
         """Plates that break at the end of a window, with stress, axis and place as `bending.judge` gives them."""
-        known, self._known, new = self._known, {}, (0.0, np.empty(0))
         who = np.flatnonzero(loaded.row[:-1] >= 0)
-        plates = [store.list[i] for i in who.tolist()]
-        time = np.array([known.get(p.id, new)[0] + window for p in plates])
+        ids = store.tables.told.ids[who]
+        time = self._time.of(ids, 0.0) + window
         due = time >= self.physics.breaking_time * (1.0 - 1e-9)
-        for k in np.flatnonzero(~due).tolist():
-            self._known[plates[k].id] = float(time[k]), loaded.impulse[k]
+        self._time, self._loads = Known(ids[~due], time[~due]), Known(ids[~due], loaded.impulse[~due])
         worst = judge_all(who, due, store.plates, store.tables.pieces, loaded, time, self.ice)
-        return [(plates[k], worst[k]) for k in np.flatnonzero(worst[:, 0] >= 1.0).tolist()]
+        return [(store.list[who[k]], worst[k]) for k in np.flatnonzero(worst[:, 0] >= 1.0).tolist()]
 
 
 def parts_of(plate: Plate, axis: int, place: float, physics: RubblePhysics) -> list[list[tuple[Prism, Array]]]:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray
+from rubble.arrays import Array, IntArray, Known
 from rubble.books import BOOKS, GROUND, SHIFT
 from rubble.breaking import Break, Breaking, part
 from rubble.edges import Edges
@@ -60,7 +60,7 @@ class Runner:
         self._rows: tuple[Rows, Rows] = room(4096), room(4096)
         self._counted = np.zeros(2, np.int64)
         self._neighbours = Neighbours(physics.thickness)
-        self._pressure: dict[int, Array] = {}
+        self._pressure = Known(np.zeros(0, np.int64), np.zeros((0, 6)))  #: of plates by number, see `Sums`
         self.budget: dict[str, Array] = {}
         self.power_on_sheet = 0.0
         self.breaking, self.moving = Breaking(physics), resting()
@@ -106,7 +106,7 @@ class Runner:
             loaded=self.breaking.begin(store),
             planar=self.planar,
         )
-        pressure = self._known_pressure(store)
+        pressure = self._pressure.of(tables.told.ids, np.nan)
         sums = Sums(tables.sums, self.books, self.water_impulse, pressure, self.momenta, self._counted)
         momentum, on_sheet = plates.moved[:-1] @ plates.velocity[:-1, :3], float(self.books["on_sheet"][0])
         self._run = Run(window, scene, sums, momentum, on_sheet, self.momenta[GROUND].copy())
@@ -128,7 +128,7 @@ class Runner:
         run = self._run
         sections.make_room()
         keep(sections, self.edges)
-        self._pressure = {p.id: run.sums.pressure[i] for i, p in enumerate(store.list)}
+        self._pressure = Known(store.tables.told.ids, run.sums.pressure)
         self.power_on_sheet = (float(self.books["on_sheet"][0]) - run.on_sheet) / self.window
         self._balance(store, run)
 
@@ -182,10 +182,6 @@ class Runner:
         p = self.physics
         bias, mu = 1.0 - BIAS ** (p.substep / p.pace), (coefficient(p.mu_ice_ice), coefficient(p.mu_structure))
         return Surface(*mu, p.mu_bed, p.restitution, bias, p.slop)
-
-    def _known_pressure(self, store: Store) -> Array:
-        unknown = np.full(6, np.nan)
-        return np.array([self._pressure.get(p.id, unknown) for p in store.list]).reshape(-1, 6)
 
     def _rename(self, new: IntArray) -> None:
         """Slices have new numbers; rows of slices that are gone are no first guess any more."""
