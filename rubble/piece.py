@@ -9,7 +9,7 @@ from math import cos, sin
 
 import numpy as np
 
-from rubble.arrays import Array, Records, rows
+from rubble.arrays import Array, rows
 from rubble.geometry import area_moments, contiguous, is_convex, place
 from rubble.physics import RubblePhysics
 from rubble.plates import Plates
@@ -43,10 +43,10 @@ class Piece:
         return self.prism.polygon + self.centre[::2]
 
     @cached_property
-    def edges(self) -> Records:
-        """(e,) wetted edges of its prism, in the plate's axes."""
-        out = self.prism.edges.copy()
-        rows(out, "x0", 4)[:] += [self.centre[0], self.centre[2], self.centre[0], self.centre[2]]
+    def edges(self) -> Array:
+        """(e, 8) wetted edges of its prism, numbers of `pressure.EDGE`, in the plate's axes."""
+        out = rows(self.prism.edges).copy()
+        out[:, :4] += [self.centre[0], self.centre[2], self.centre[0], self.centre[2]]
         return out
 
 

@@ -195,7 +195,7 @@ def _hulls(
         plate=owner,
         y=y,
         side=1.0 / (alone * width) if len(pieces) else np.zeros(0),
-        edges=np.concatenate([filled(EDGE, []), *edges]),
+        edges=filled(EDGE, np.concatenate([np.zeros((0, len(EDGE.names or ()))), *edges])),
         offset=np.cumsum([0, *map(len, edges)], dtype=np.int64),
         weight=force,
         moment=np.array([p.thrust[3:] for p in plates]).reshape(-1, 3),
