@@ -77,11 +77,12 @@ class Section:
         self._stand()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {k: v for k, v in self.__dict__.items() if k not in ("space", "pairs")}
+        kept = {k: v for k, v in self.__dict__.items() if k not in ("space", "pairs")}
+        return kept | {"room": self.pairs.capacity}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
+        self.pairs = PairList(state.pop("room"))
         self.__dict__.update(state)
-        self.pairs = PairList()
         self.connect()
 
 

@@ -27,6 +27,7 @@ from rubble.store import Store
 SET_CORNERS = address(ffi.addressof(lib, "cpPolyShapeSetVertsRaw"))
 SAME = 1e-9  #: corners that have moved less are the same, in thicknesses
 SLIVER = 1e-4  #: area of a slice, in thicknesses squared, below which it is none
+NEIGHBOURS = 6  #: pairs of a slice for which there is room at once: convex outlines that lie close have three
 KEYS = 1 << 20  #: more sections than there are
 LAYOUTS = arbiter_layout(), body_layout()
 
@@ -140,6 +141,9 @@ class SectionTable:
     def _look_up(self) -> None:
         """Tables by which kernels know sections and bodies."""
         sections = list(self.by_key.values())
+        for section, own in zip(sections, np.bincount(self.slices.section, minlength=len(sections)), strict=True):
+            if own * NEIGHBOURS > section.pairs.capacity:
+                section.pairs.reserve(2 * NEIGHBOURS * int(own))
         still = [address(s.space.static_body._body) for s in sections]
         sheets = [s.sheet.address for s in sections if s.sheet is not None]
         bodies = np.concatenate([np.array(still + sheets, np.int64), self.slices.body])

@@ -25,7 +25,7 @@ def rectangle(x0, z0, x1, z1):
     return np.array([(x0, z0), (x1, z0), (x1, z1), (x0, z1)], dtype=float)
 
 
-def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
+def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None, alone=True):
     ends = np.array([x, x + length])
     return layer.add_block(
         key,
@@ -33,6 +33,7 @@ def add(layer, key, x, z, length=5.0, velocity=(0.5, 0.0), y=None):
         velocity,
         y=layer.centre(key) if y is None else y,
         fragment=7,
+        alone=alone,
     )
 
 

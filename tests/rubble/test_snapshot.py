@@ -22,6 +22,20 @@ def test_a_run_goes_on_from_its_checkpoint_with_the_same_bits(scene):
     assert live.cleared == again.cleared
 
 
+def test_a_crowded_section_has_room_for_its_pairs_at_once_and_from_a_checkpoint(scene):
+    """Rows of blocks that stand in each other: 500 pairs in the first sub-step, 256 fit into a list at first."""
+    layer = RubbleLayer(scene.PHYSICS, scene.WIDTH)
+    for i in range(300):
+        scene.add(layer, 0, -20.0 - 4.9 * (i % 20), -4.0 - 2.95 * (i // 20), velocity=(0.0, 0.0), alone=False)
+    layer.advance(1)
+    assert layer.section(0).pairs.count > 500
+    live, saved = checkpoint(layer)
+    live.advance(2)
+    again = restore(saved, live)
+    again.advance(2)
+    assert scene.picture(live) == scene.picture(again)
+
+
 def test_loading_disturbs_nothing(scene):
     """Contacts keep their history: a settled pile goes on as if nothing had happened."""
     layer = RubbleLayer(scene.PHYSICS, scene.WIDTH, solids=scene.cone_cut)
