@@ -95,12 +95,15 @@ def _measured_cells(row: dict[str, Any], scale: Any) -> tuple[str, str, str]:
 
 
 def _show_indices(rows: list[dict[str, Any]]) -> None:
-    second = "total" if "total" in rows[0] else "delta"
-    table = new_table("quantity", "key", "first order", second, "points", title="Sensitivity, +- 95 %")
+    names = {"first": "first order"} | {name: name for name in ("total", "delta") if name in rows[0]}
+    table = new_table("quantity", "key", *names.values(), "points", title="Sensitivity, +- 95 %")
     for row in rows:
-        cells = [f"{row[name]:.2f} +- {row[f'{name}_interval']:.2f}" for name in ("first", second)]
+        cells = [f"{row[name]:.2f} +- {row[f'{name}_interval']:.2f}" for name in names]
         table.add_row(row["quantity"], row["key"], *cells, str(row["points"]))
     stdout.print(table)
+    if "explained" in rows[0]:
+        told = {row["quantity"]: f"{row['explained']:.0%} of {row['quantity']}" for row in rows}
+        stdout.print(f"Keys by themselves explain {', '.join(told.values())} at points that were left out of the fit.")
 
 
 def _ratio(value: float | None) -> str:

@@ -130,8 +130,31 @@ def test_random_points_find_the_key_that_counts():
     design = Design("random", samples=500)
     chosen, x = design.variants(UNIT, 0), design.points(UNIT)
     found = indices(design, UNIT, chosen, rows_of(chosen, x[:, 1] + 0.1 * x[:, 2]))[:3]
-    assert found[1]["first"] == pytest.approx(1 / 1.01, abs=0.03)
+    assert found[1]["first"] == pytest.approx(1 / 1.01, abs=1e-6)
+    assert found[1]["explained"] == pytest.approx(1.0)
     assert found[1]["delta"] > 0.5 > 3 * found[0]["delta"]
+
+
+def test_a_few_dozen_random_points_tell_keys_apart_and_what_keys_alone_do_not_explain():
+    """2 u + (3 w^2 - 1) of u, w in -1..1 and a product of variance 4/45: shares of 1.3333, 0.8 and 0.0889 of 2.2222.
+
+    A twin that knows straight lines only gives the square nothing.
+    """
+    design, keys = Design("random", samples=48), UNIT[:2]
+    x = design.points(keys)
+    u, w = ((x - [r.low for r in keys]) / [r.high - r.low for r in keys] * 2.0 - 1.0).T
+    found = indices(
+        design, keys, chosen := design.variants(keys, 0), rows_of(chosen, 2 * u + 3 * w * w - 1 + 0.9 * u * w)
+    )
+    first = [row["first"] for row in found[:2]]
+    whole = 4 / 3 + 4 / 5 + 0.09
+    assert first == pytest.approx([4 / 3 / whole, 4 / 5 / whole], abs=0.06)
+    assert all(abs(f - t) < row["first_interval"] for f, t, row in zip(first, [0.6, 0.36], found, strict=False))
+    assert 0.9 < found[0]["explained"] < 0.99
+    product = indices(design, keys, chosen, rows_of(chosen, u * w))
+    assert product[0]["explained"] < 0.1  # nothing but interaction
+    assert max(row["first"] for row in product[:2]) < 0.2
+    assert "delta" not in found[0]
 
 
 def test_a_failed_point_takes_its_block_and_nothing_else():
