@@ -70,12 +70,12 @@ def parts_of(plate: Plate, axis: int, place: float, physics: RubblePhysics) -> l
 
 
 def _cut_x(piece: Piece, place: float) -> list[tuple[Array, float, float]]:
-    outline, y, w = piece.prism.polygon + piece.centre[::2], float(piece.centre[1]), piece.prism.width
+    outline, y, w = piece.corners, float(piece.centre[1]), piece.prism.width
     return [(clip(outline, 1.0, 0.0, place), y, w), (clip(outline, -1.0, 0.0, -place), y, w)]
 
 
 def _cut_y(piece: Piece, place: float) -> list[tuple[Array, float, float]]:
-    outline, y, w = piece.prism.polygon + piece.centre[::2], float(piece.centre[1]), piece.prism.width
+    outline, y, w = piece.corners, float(piece.centre[1]), piece.prism.width
     low, high = y - 0.5 * w, y + 0.5 * w
     at = min(max(place, low), high)
     return [(outline, 0.5 * (low + at), at - low), (outline, 0.5 * (at + high), high - at)]

@@ -12,6 +12,7 @@ from rubble.arrays import Array
 from rubble.compiled import compiled
 from rubble.gather import Scene
 from rubble.geometry import chord
+from rubble.plates import turn_back
 from rubble.rows import Rows, go_on
 
 
@@ -70,7 +71,6 @@ def deepest_chord(scene: Scene, outline: Array, rows: Rows, start: int, end: int
     point, n, k = rows.point[deep], rows.way[deep, 0], rows.point[deep].b
     p, r, half = scene.plates.position[k], scene.plates.rotation[k], 0.5 * point.depth
     x, y, z = point.x + half * n.x - p[0], point.y + half * n.y - p[1], point.z + half * n.z - p[2]
-    own_x, own_z = r[0, 0] * x + r[1, 0] * y + r[2, 0] * z, r[0, 2] * x + r[1, 2] * y + r[2, 2] * z
-    n_x, n_z = r[0, 0] * n.x + r[1, 0] * n.y + r[2, 0] * n.z, r[0, 2] * n.x + r[1, 2] * n.y + r[2, 2] * n.z
-    found: float = chord(outline, outline.shape[0], own_x, own_z, n_x, n_z)
+    (x, _, z), (n_x, _, n_z) = turn_back(r, x, y, z), turn_back(r, n.x, n.y, n.z)
+    found: float = chord(outline, outline.shape[0], x, z, n_x, n_z)
     return found

@@ -127,7 +127,7 @@ class Plate:
     @cached_property
     def span(self) -> Array:
         """From where to where it reaches along its x and y axes (2, 2) [m]."""
-        x = np.concatenate([p.prism.polygon[:, 0] + p.centre[0] for p in self.pieces])
+        x = np.concatenate([p.corners[:, 0] for p in self.pieces])
         y = [(p.centre[1] - 0.5 * p.prism.width, p.centre[1] + 0.5 * p.prism.width) for p in self.pieces]
         return np.array([(x.min(), x.max()), (np.min(y), np.max(y))])
 

@@ -82,8 +82,14 @@ class Store:
         part.aligned, part.sliding = plate.aligned, plate.sliding
         return part
 
-    def replace(self, pairs: Sequence[tuple[Plate, Sequence[Plate]]]) -> None:
-        """Others take the place of plates; the first of them has what was summed of the plate in the window."""
+    def replace(self, pairs: Sequence[tuple[Plate, Sequence[Plate]]]) -> Array:
+        """Others take the place of plates; the first of them has what was summed of the plate in the window.
+
+        Returns by how much what all plates carry has changed (6,), see `carried`.
+        """
+        if not pairs:
+            return np.zeros(6)
+        before = self.carried
         sums = [self.tables.sums[plate.row].copy() for plate, _ in pairs]
         self._take_out([plate for plate, _ in pairs])
         self.list = sorted([*self.list, *(new for _, others in pairs for new in others)], key=lambda p: p.id)
@@ -91,6 +97,7 @@ class Store:
         for (_, others), own in zip(pairs, sums, strict=True):
             if others:
                 self.tables.sums[others[0].row] = own
+        return self.carried - before
 
     @property
     def carried(self) -> Array:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, IntArray
+from rubble.arrays import Array
 from rubble.breaking import LEAST
 from rubble.geometry import area_moments, clip
 from rubble.lost import Lost
@@ -45,32 +45,23 @@ class Bite(NamedTuple):
 def find_bites(store: Store, rows: Rows, count: int, slices: Slices) -> dict[int, list[Bite]]:
     """Where the structure has crushed pieces, by the number of the piece; from the rows of the last sub-step."""
     point, n, least = rows.point[:count], rows.way[:count, 0], WORN * store.physics.slop
-    found: dict[int, list[Bite]] = {}
+    pieces, found = store.tables.pieces, dict[int, list[Bite]]()
     deep = (point["kind"] == STRUCTURE) & (point["crushed"] > 0.0) & (point["met"] > least)
     for c in np.flatnonzero(deep).tolist():
-        piece = _piece_of(store, slices, int(point["slot_a"][c]), int(point["slot_b"][c]))
-        if piece < 0:
-            continue
+        slot = int(point["slot_b"][c])
+        own = point["slot_a"][c] == ROUND_SLOT  # else it is a slice
+        piece = int(np.flatnonzero(pieces.number == slot)[0]) if own else int(slices.piece[slot])
         normal = np.array([n[axis][c] for axis in "xyz"])
         spot = np.array([point[axis][c] for axis in "xyz"]) - 0.5 * point["depth"][c] * normal
-        plate = store.list[int(store.tables.pieces.plate[piece])]
+        plate = store.list[int(pieces.plate[piece])]
         depth = min(float(point["met"][c]), float(point["crushed"][c]) + least)
         bite = Bite((spot - plate.position) @ plate.rotation, normal @ plate.rotation, depth)
-        found.setdefault(int(store.tables.pieces.number[piece]), []).append(bite)
+        found.setdefault(int(pieces.number[piece]), []).append(bite)
     return found
 
 
-def _piece_of(store: Store, slices: Slices, slot_a: int, slot_b: int) -> int:
-    """Row of the piece that a contact with the structure belongs to; -1 if it has gone."""
-    numbers: IntArray = store.tables.pieces.number
-    if slot_a != ROUND_SLOT:
-        return int(slices.piece[slot_b])
-    at = np.flatnonzero(numbers == slot_b)
-    return int(at[0]) if len(at) else -1
-
-
 def take_off(store: Store, found: dict[int, list[Bite]], energy_of: Callable[[Plate], float], crushed: Lost) -> Array:
-    """Takes crushed ice off; returns by how much what plates carry has changed, see `Store.carried`.
+    """Takes crushed ice off; returns by how much what plates carry has changed, as `Store.replace`.
 
     A piece that has gone in the meantime is none of them.
     """
@@ -83,11 +74,7 @@ def take_off(store: Store, found: dict[int, list[Bite]], energy_of: Callable[[Pl
         mass, momentum, energy = sum(p.mass for p in new), sum(p.momentum for p in new), sum(map(energy_of, new))
         crushed.take(plate.mass - mass, plate.momentum - momentum, energy_of(plate) - energy)
         pairs.append((plate, new))
-    if not pairs:
-        return np.zeros(6)
-    before = store.carried
-    store.replace(pairs)
-    return store.carried - before
+    return store.replace(pairs)
 
 
 def _worn(plate: Plate, found: dict[int, list[Bite]], physics: RubblePhysics) -> list[Left]:
@@ -113,11 +100,10 @@ def _rest(store: Store, plate: Plate, left: Sequence[Left]) -> Plate:
 
 def _bitten(piece: Piece, found: Sequence[Bite], slop: float, thickness: float) -> tuple[Array, float, Array] | None:
     """Outline (k, 2), y of the middle and widths (s,) without what was crushed; None if it stays as it is."""
-    outline, y = piece.prism.polygon + piece.centre[::2], float(piece.centre[1])
-    widths, whole, changed = piece.prism.widths, outline, False
+    outline, y, widths, changed = piece.corners, float(piece.centre[1]), piece.prism.widths, False
     for bite in found:
         x, z = bite.spot[::2]
-        if np.hypot(*(whole - bite.spot[::2]).T).min() > BY_CORNER * slop:
+        if np.hypot(*(piece.corners - bite.spot[::2]).T).min() > BY_CORNER * slop:
             continue
         nx, ny, nz = bite.normal
         if np.hypot(nx, nz) >= abs(ny):

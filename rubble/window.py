@@ -145,10 +145,7 @@ class Runner:
                 pairs.append((plate, found[0]))
                 breaks.append(found[1])
                 self.broken += self.energy_of(plate) - sum(self.energy_of(p) for p in found[0])
-        if pairs:
-            carried = store.carried
-            store.replace(pairs)
-            self.momenta[SHIFT] += store.carried - carried
+        self.momenta[SHIFT] += store.replace(pairs)
         self.momenta[SHIFT] += take_off(store, bites, self.energy_of, crushed)
         return breaks
 

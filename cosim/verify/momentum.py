@@ -14,7 +14,6 @@ from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
 from rubble.physics import RubblePhysics
 from rubble.piece import Slab
-from rubble.plates import momenta
 
 PARAMETERS: dict[str, Any] = {
     "e": 0.3,
@@ -116,21 +115,16 @@ def pile_balance(p: dict[str, Any], substeps: int) -> tuple[float, float]:
         outline = place(box((4.0, 2.5)), x, z, 0.0, 0.0, 0.0)
         slab = Slab(outline, np.array([x - 2.0, x + 2.0]), np.array([3.0]), p["rho_i"])
         layer.add_block(0, slab, (1.0, 0.2 * (-1) ** i, 0.0), y=0.4 * (i % 3))
-    received, scale, start = layer.runner.momenta, np.zeros(6), _carried(layer)
+    received, scale, start = layer.runner.momenta, np.zeros(6), layer.store.carried
     before = received.copy()
     for _ in range(substeps // 10):
         layer.advance(10)
         scale += np.abs(received - before).sum(axis=0)
         before = received.copy()
-    gained = _carried(layer) - start
+    gained = layer.store.carried - start
     signs = np.ones(4), np.array([-1.0, 1.0, 1.0, 1.0])
     errors = [float((np.abs(gained - sign @ received) / scale).max()) for sign in signs]
     return errors[0], errors[1]
-
-
-def _carried(layer: RubbleLayer) -> Array:
-    plates = layer.store.plates
-    return momenta(plates, plates.moved[:-1], plates.inertia[:-1])
 
 
 def run(p: dict[str, Any], quick: bool) -> CaseResult:
