@@ -85,7 +85,8 @@ def compiled(*signature: str, borrows: bool = False, **options: Any) -> Callable
     """`numba.njit` with the machine code kept in `cache_folder`; signature and options as there.
 
     A kernel that ``borrows`` makes no array: references to those that it is given are not counted. Where it is called
-    for each of many rows with tables of a hundred arrays, counting takes longer than the rest.
+    for each of many rows with tables of a hundred arrays, counting takes longer than the rest. So does handing the
+    tables over, array by array: what a loop calls for each row is made part of it with ``forceinline``.
     """
     options |= {"_nrt": not borrows}
     if signature:

@@ -97,7 +97,7 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
     return count
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: int, a: int, b: int) -> None:
     """One contact; the smaller slot becomes end a: structure and sheet before slices."""
     layout, place = scene.sections.arbiter, scene.sections.body
@@ -133,7 +133,7 @@ def _row(scene: Scene, rows: Rows, c: int, section: int, arbiter: int, contact: 
     point.depth = depth * set_normal(rows, c, nx, n_y, nz)
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _face_of(scene: Scene, s: int, px: float, pz: float) -> int:
     """Edge of a slice whose outward normal is (px, pz); -1 if it has none."""
     r = scene.plates.rotation[scene.slices.plate[s]]
@@ -148,7 +148,7 @@ def _face_of(scene: Scene, s: int, px: float, pz: float) -> int:
     return found
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _on_structure(scene: Scene, section: int, point: Record, nx: float, nz: float) -> tuple[float, float]:
     """n_y of the structure over its part in the plane, (nx, nz); by how much the contact is deeper.
 
@@ -178,7 +178,7 @@ def _on_structure(scene: Scene, section: int, point: Record, nx: float, nz: floa
     return nx * (face.constant + face.radial * y / at) + lean, shift * nx
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _lean(scene: Scene, a: int, b: int, nx: float, nz: float) -> float:
     """n_y over the part in the plane of the normal of two slices: that of the face, or faces, which it belongs to."""
     y = across = 0.0
@@ -210,7 +210,7 @@ def _chord(scene: Scene, point: Record, n: Record) -> float:
     return found
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _law(scene: Scene, rows: Rows, start: int, end: int) -> None:
     """What the contact of a pair carries before it crushes, shared by its points.
 
@@ -231,7 +231,7 @@ def _law(scene: Scene, rows: Rows, start: int, end: int) -> None:
         rows.point[c].most = scene.strength * width * max(length, scene.shortest) / (end - start)
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _first_guess(rows: Rows, start: int, end: int, old: Rows, kept: int, stamp: int, cut: bool) -> None:
     """Impulses of the same points one sub-step ago; a new point has as much to give back as the others of its pair."""
     first = (kept & 0xFFFFFF) - 1 if kept >> 24 == stamp - 1 else -1

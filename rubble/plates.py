@@ -106,7 +106,7 @@ def orient_all(plates: Plates) -> None:
         orient(plates, i)
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def turn(plates: Plates, i: int, dt: float) -> float:
     """Turn plate i for a time; returns the kinetic energy that it gains, because the step is finite [J]."""
     v, s, r = plates.motion[i], plates.shift[i], plates.rotation[i]

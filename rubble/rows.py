@@ -75,7 +75,7 @@ def grown(rows: Rows, count: int) -> Rows:
     return new
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def speed(way: Record, a: Record, b: Record) -> float:
     """Speed of b against a, both MOTION, along a direction of a row."""
     found: float = way.x * (b.x - a.x) + way.y * (b.y - a.y) + way.z * (b.z - a.z)
@@ -122,7 +122,7 @@ def set_normal(rows: Rows, c: int, x: float, y: float, z: float) -> float:
     return inverse
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def set_arms(rows: Rows, c: int, plates: Plates, edges: Edges) -> None:
     """Arms and effective masses of row c from its point, its ends and its directions."""
     point = rows.point[c]

@@ -22,7 +22,7 @@ from rubble.plates import Plates
 from rubble.rows import Rows, speed
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _push(way: Record, a: Record, b: Record, ma: float, mb: float, j: float) -> None:
     """An impulse j along a direction on b, and the opposite one on a; ``ma``, ``mb`` inverse masses."""
     x, y, z = j * way.x, j * way.y, j * way.z
@@ -55,7 +55,7 @@ def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
                     push_sheet(edges, point, way, way.impulse)
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
     """Take out overlap; ``edge``: how fast the sheet's edge recedes along n. Returns the impulse."""
     new = min(max(point.shift + n.mass * (point.shift_speed - speed(n, a, b) + edge), 0.0), n.impulse)
@@ -66,7 +66,7 @@ def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float,
     return j
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
     """Normal impulse of one row; ``edge``: speed of the sheet along n. Returns by how much it has changed."""
     new = n.impulse + n.mass * (n.target - speed(n, a, b) + edge)
@@ -79,7 +79,7 @@ def _normal(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float
     return j
 
 
-@compiled(nogil=True, borrows=True)
+@compiled(nogil=True, borrows=True, forceinline=True)
 def _friction(
     ways: tuple[Record, Record, Record],
     mu: float,
