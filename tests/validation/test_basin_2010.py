@@ -133,17 +133,14 @@ def test_with_open_cracks_the_forces_close_to_rounding():
 
 @pytest.mark.slow
 def test_with_open_cracks_the_floe_of_34_x_68_m_loads_the_cone_with_8_mn():
-    """Section 6.5: about 8 MN. A halved window changes the mean of the first 20 s by less than 2 %, the peak by 5 %.
-
-    In 20 s the floe has met the cone and broken; its pieces then go their own ways, whatever is changed.
-    """
+    """Section 6.5: about 8 MN. A halved window changes the mean by less than 2 % and the peak by less than 5 %."""
     (result, seen), (halved, _) = (
         run("basin_2010_floe_34x68m", "scenario.duration='60 s'", f"coupling.window='{w}'", *OPEN_CRACKS)
         for w in ("50 ms", "25 ms")
     )
     check_balances(result.ledger, seen, result.ledger["initial_mass"], OPEN)
     peak, again = (r.to_json()["peaks"]["fx"]["value"] for r in (result, halved))
-    mean, mean_again = (np.mean([f.sum(axis=0)[0] for t, f in r.loads if t <= 20e9]) for r in (result, halved))
+    mean, mean_again = (np.mean([load.sum(axis=0)[0] for _, load in r.loads]) for r in (result, halved))
     assert peak == pytest.approx(8e6, rel=0.2)
     assert again == pytest.approx(peak, rel=0.05)
     assert mean_again == pytest.approx(mean, rel=0.02)
@@ -186,16 +183,13 @@ def test_the_first_encounter_of_the_165_m_floe_with_cracks_that_close():
 
 @pytest.mark.slow
 def test_with_open_cracks_the_165_m_floe_with_its_rubble_runs_for_five_minutes():
-    """Stable, with balances that close, and no corner in the cone by more than a 25th of the thickness.
-
-    Crushing alone keeps it at 0.9 %; a piece wedged between cone and sheet came to 2.9 % for some seconds.
-    """
+    """Stable, with balances that close, and no corner of a piece in the cone beyond the slop."""
     scheduler, seen = build(load_scenario("basin_2010_floe_165m", OPEN_CRACKS)), Seen()
-    most = 0.04 * scheduler.rubble.physics.thickness
+    slop = scheduler.rubble.physics.slop
     while scheduler.t_ns < 300_000_000_000:
         frame = scheduler.macro_step()
         if scheduler.t_ns % 1_000_000_000 == 0:
-            assert deepest(scheduler.rubble.layer) < most
+            assert deepest(scheduler.rubble.layer) < slop
         seen.on_frame(frame)
     load = np.array(seen.load)
     assert np.abs(load).max() < 30e6  # not a number is not less either
