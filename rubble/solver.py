@@ -5,7 +5,8 @@ Rows are solved one after the other, in the order in which they stand, each with
     normal    0 <= J_n <= most, so that u_n reaches its target (restitution)
     friction  |(J_t, J_s)| <= mu J_n, against the slip, on both ends
     shift     0 <= J <= J_n, so that overlap recedes; it moves plates without a velocity (split impulse: no energy of
-              motion), and pushes no harder than the contact does: what carries nothing is left as it overlaps
+              motion), and pushes no harder than the contact does: what carries nothing is left as it overlaps; on the
+              structure as hard as it takes, up to ``most``, that no shift of others moves a plate deeper into it
 
 ``most`` is what the ice carries before it crushes. A row that holds (a joint) has no bounds. The sheet's edge answers
 to an impulse in one section in all of them, by its matrix, or with its nodes there, see `sheet`.
@@ -19,7 +20,7 @@ from rubble.arrays import Record
 from rubble.compiled import compiled
 from rubble.edges import Edges, push_edge, push_sheet, sheet_speed
 from rubble.plates import Plates
-from rubble.rows import Rows, speed
+from rubble.rows import STRUCTURE, Rows, speed
 
 
 @compiled(nogil=True, borrows=True, forceinline=True)
@@ -58,7 +59,9 @@ def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
 @compiled(nogil=True, borrows=True, forceinline=True)
 def _shift(point: Record, n: Record, a: Record, b: Record, ma: float, mb: float, edge: float) -> float:
     """Take out overlap; ``edge``: how fast the sheet's edge recedes along n. Returns the impulse."""
-    new = min(max(point.shift + n.mass * (point.shift_speed - speed(n, a, b) + edge), 0.0), n.impulse)
+    stopped = point.shift + n.mass * (edge - speed(n, a, b))
+    most = max(n.impulse, min(stopped, point.most)) if point.kind == STRUCTURE else n.impulse
+    new = max(min(stopped + n.mass * point.shift_speed, most), 0.0)
     j = float(new - point.shift)
     if j != 0.0:
         point.shift = new

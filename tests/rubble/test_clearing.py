@@ -17,7 +17,10 @@ PUSH = 1.2e5  #: thrust on each block, twice what it takes to push one of 50 kN 
 
 
 def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
-    """Five sections get a block each time; returns the layer, what was fed, and afloat, cleared, Fx per window."""
+    """A row of five blocks each time, off the crown: one that meets it head-on stands there, and may hold up all behind.
+
+    Returns the layer, what was fed, and afloat, cleared, Fx per window.
+    """
     shape = cone(np.radians(45), 10.0, 6.0, top=5.0, toe_depth=8.0)
     physics = RubblePhysics(rho_i=846.0, rho_w=rho_w, thickness=H, added_mass=0.2, added_inertia=0.2)
     layer = RubbleLayer(
@@ -29,8 +32,9 @@ def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
     random, draft, fed, rows = np.random.default_rng(1), H * 846 / rho_w, [], []
     for window in range(round(seconds / 0.05)):
         if window % round(every / 0.05) == 0:
+            aside = random.uniform(-1, 1)
             for key in range(-2, 3):
-                x, y = -32.0 + random.uniform(-1, 1), layer.centre(key)
+                x, y = -32.0 + random.uniform(-1, 1), layer.centre(key) + aside
                 outline = np.array([(x - 2, -draft), (x + 2, -draft), (x + 2, H - draft), (x - 2, H - draft)])
                 number = layer.add_block(
                     key, Slab(outline, np.array([x - 2, x + 2]), np.array([WIDTH]), 846.0), (0.3, 0.0), y=y

@@ -63,18 +63,44 @@ def test_overlap_that_was_moved_into_is_given_back_as_fast_as_the_contact_pushes
         assert depth_of(layer) < 1.1 * layer.physics.slop or force == 0.0
 
 
-@pytest.mark.parametrize("force", [1e4, 1e6])
-def test_a_shift_pushes_no_harder_than_its_contact(force):
-    """A block in a gap that is too narrow: both walls would push it out, in vain and ever harder."""
+def shifted(force, speed_right, speed_left):
+    """Solved sub-step of a block in a gap 0.2 m too narrow, which a force presses to the right [N].
+
+    Returns shift and impulse on both walls together, right first, and the speed to the right with which it moves [m/s].
+    """
     layer = pressed(beside(0.1, walls=(RIGHT, LEFT)), force)
     layer.advance(1)
     rows, count = layer.runner._rows[int(layer.runner._counted[1]) % 2], layer.runner.contacts
-    assert (rows.point["kind"][:count] == STRUCTURE).all()
-    rows.point["shift_speed"][:count] = 0.5
-    solve(rows, count, layer.store.plates, layer.runner.edges, 100)
-    shift = rows.point["shift"][:count]
-    assert (shift <= rows.way["impulse"][:count, 0]).all()
-    assert shift.sum() > 0.5 * force * layer.physics.substep
+    point, normal = rows.point[:count], rows.way["x"][:count, 0]
+    assert (point["kind"] == STRUCTURE).all() and (np.abs(normal) > 0.99).all()
+    point["shift_speed"] = np.where(normal < 0.0, speed_right, speed_left)
+    plates, mass = layer.store.plates, layer.store.list[0].mass
+    rows.way["impulse"][:count], plates.motion["x"][0] = 0.0, force * layer.physics.substep / mass
+    solve(rows, count, plates, layer.runner.edges, 100)
+    sides = [normal < 0.0, normal > 0.0]
+    shift = [point["shift"][side].sum() for side in sides]
+    impulse = [rows.way["impulse"][:count, 0][side].sum() for side in sides]
+    return shift, impulse, plates.shift["x"][0], mass
+
+
+@pytest.mark.parametrize("force", [1e4, 1e6])
+def test_a_shift_pushes_no_harder_than_its_contact(force):
+    """Both walls would push the block out, in vain and ever harder."""
+    shift, impulse, _, _ = shifted(force, 0.5, 0.5)
+    assert max(shift) <= sum(impulse)  # its own, and what holds against the other one
+    assert max(shift) > 0.5 * force * RubblePhysics().substep
+
+
+@pytest.mark.parametrize("force", [1e4, 1e6])
+def test_no_shift_moves_a_block_deeper_into_the_structure(force):
+    """The right wall gives back what it is owed; the left one carries little, and holds against it all the same.
+
+    If it pushed no harder than it carries the block would go into it with nine tenths of F dt / m.
+    """
+    (right, left), impulse, speed, mass = shifted(force, 0.5, 0.0)
+    assert impulse[1] < 0.11 * impulse[0]
+    assert left == pytest.approx(right, rel=1e-6)
+    assert abs(speed) < 1e-6 * force * RubblePhysics().substep / mass
 
 
 def test_plates_that_slide_along_an_oblique_face_come_no_nearer():
