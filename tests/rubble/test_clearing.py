@@ -17,7 +17,7 @@ PUSH = 1.2e5  #: thrust on each block, twice what it takes to push one of 50 kN 
 
 
 def feed(seconds, every=20.0, push=PUSH, rho_w=1006.0):
-    """A row of five blocks each time, off the crown: one that meets it head-on stands there, and may hold up all behind.
+    """A row of five blocks each time, off the crown: one that meets it head-on stands there and holds up all behind.
 
     Returns the layer, what was fed, and afloat, cleared, Fx per window.
     """

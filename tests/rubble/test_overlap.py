@@ -72,7 +72,8 @@ def shifted(force, speed_right, speed_left):
     layer.advance(1)
     rows, count = layer.runner._rows[int(layer.runner._counted[1]) % 2], layer.runner.contacts
     point, normal = rows.point[:count], rows.way["x"][:count, 0]
-    assert (point["kind"] == STRUCTURE).all() and (np.abs(normal) > 0.99).all()
+    assert (point["kind"] == STRUCTURE).all()
+    assert (np.abs(normal) > 0.99).all()
     point["shift_speed"] = np.where(normal < 0.0, speed_right, speed_left)
     plates, mass = layer.store.plates, layer.store.list[0].mass
     rows.way["impulse"][:count], plates.motion["x"][0] = 0.0, force * layer.physics.substep / mass

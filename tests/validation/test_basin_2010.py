@@ -204,7 +204,9 @@ def test_with_open_cracks_the_165_m_floe_with_its_rubble_runs_for_five_minutes(f
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="two pieces stand on end between the sheet and the shaft under the cone and crush")
+@pytest.mark.xfail(
+    strict=True, reason="two pieces stand on end between the sheet and the shaft under the cone and crush"
+)
 def test_with_open_cracks_no_window_carries_more_than_the_basin_ever_saw(five_minutes):
     """24 MN in the basin; 39 MN here, 14 s long, on a part of the structure that ice reaches with open cracks alone."""
     _, seen, _ = five_minutes
