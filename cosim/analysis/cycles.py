@@ -94,23 +94,42 @@ def piece_area(run: RunData, event: Kinds = "circumferential") -> float | None:
     return float(np.mean(areas)) if areas else None
 
 
-def feed_rate(run: RunData, cycle: int | None = None, event: Kinds = "circumferential") -> float | None:
+def feed_rate(
+    run: RunData, cycle: int | None = None, event: Kinds = "circumferential", last: float = 1.0
+) -> float | None:
     """Ice that becomes rubble per time [kg/s], less what the blocks lose by crushing; over the whole run or a cycle.
 
-    The n-th cycle begins after the event of the n-th encounter and ends with that of the next.
+    The n-th cycle begins after the event of the n-th encounter and ends with that of the next; without one ``last`` is
+    the share of the run's time that is looked at, up to its end.
     """
-    return _rate(run, ("rubble_mass", "cleared_mass"), cycle, event)
+    return _rate(run, ("rubble_mass", "cleared_mass"), cycle, event, last)
 
 
-def clearing_rate(run: RunData, cycle: int | None = None, event: Kinds = "circumferential") -> float | None:
+def clearing_rate(
+    run: RunData, cycle: int | None = None, event: Kinds = "circumferential", last: float = 1.0
+) -> float | None:
     """Rubble that passes the structure or leaves the domain per time [kg/s]; as `feed_rate`."""
-    return _rate(run, ("cleared_mass",), cycle, event)
+    return _rate(run, ("cleared_mass",), cycle, event, last)
 
 
-def _rate(run: RunData, names: tuple[str, ...], cycle: int | None, event: Kinds) -> float | None:
+def rubble_mean(run: RunData, last: float = 1.0) -> float | None:
+    """Mean volume of broken ice in front of the structure over the ``last`` share of the run's time [m^3]."""
+    if "rubble_mass" not in run.ledger or len(run.t_ns) < 2:
+        return None
+    chosen = slice(_since(run, last) + 1, None)
+    length = (run.t_ns - run.begin_ns)[chosen]
+    return float(np.average(run.ledger["rubble_mass"][chosen], weights=length)) / float(run.metadata["ice_density"])
+
+
+def _since(run: RunData, last: float) -> int:
+    """Window with whose end the last share of the run's time begins."""
+    return min(int(np.searchsorted(run.t_ns, round(float(run.t_ns[-1]) * (1.0 - last)))), len(run.t_ns) - 2)
+
+
+def _rate(run: RunData, names: tuple[str, ...], cycle: int | None, event: Kinds, share: float) -> float | None:
     if len(run.t_ns) < 2 or not set(names) <= set(run.ledger):
         return None
-    first, last = 0, len(run.t_ns) - 1
+    first, last = _since(run, share), len(run.t_ns) - 1
     if cycle is not None:
         found = encounters(run, event)
         if not 1 <= cycle < len(found):

@@ -123,7 +123,7 @@ _OF_UNIT: dict[str, tuple[Callable[..., float | None], ...]] = {
     ),
     "m": (cycles.piece_length,),
     "m^2": (cycles.piece_area,),
-    "m^3": (rubble_volume,),
+    "m^3": (rubble_volume, cycles.rubble_mean),
     "kg/s": (cycles.feed_rate, cycles.clearing_rate),
 }
 for _unit, _functions in _OF_UNIT.items():

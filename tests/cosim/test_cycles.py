@@ -142,6 +142,24 @@ def test_feed_and_clearing(cycle):
     assert cycles.clearing_rate(saw(), cycle) == pytest.approx(1e5, rel=1e-9)
 
 
+def test_of_the_last_part_of_a_run():
+    """Rubble that is cleared from half of the run on: rates and mean of the last quarter are not those of the run."""
+    run = saw()
+    t, half = run.t, 0.5 * run.t[-1]
+    cleared = 4e5 * np.maximum(t - half, 0.0)
+    run = dataclasses.replace(
+        run,
+        ledger={"rubble_mass": 4e5 * t - cleared, "cleared_mass": cleared},
+        metadata={**run.metadata, "ice_density": "800.0"},
+    )
+    assert cycles.clearing_rate(run, last=0.25) == pytest.approx(4e5, rel=1e-9)
+    assert cycles.clearing_rate(run) == pytest.approx(2e5, rel=0.01)
+    assert cycles.feed_rate(run, last=0.25) == pytest.approx(4e5, rel=1e-9)
+    assert cycles.rubble_mean(run, last=0.25) == pytest.approx(4e5 * half / 800.0, rel=1e-9)
+    assert cycles.rubble_mean(run) == pytest.approx(0.75 * 4e5 * half / 800.0, rel=0.01)
+    assert cycles.rubble_mean(dataclasses.replace(run, ledger={})) is None
+
+
 def test_a_reference_may_name_them():
     text = '[[feature]]\nname = "a"\nunit = "N"\nsource = "s"\nquantity = "encounter_load"\nn = 2\ncomponent = "fx"\n'
     (feature,) = parse_reference(text, "r.toml").features

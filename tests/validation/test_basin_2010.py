@@ -183,7 +183,7 @@ def test_the_first_encounter_of_the_165_m_floe_with_cracks_that_close():
 
 @pytest.fixture(scope="module")
 def five_minutes():
-    """300 s of the 165 m floe with open cracks: the scheduler, what was seen, the deepest corner of every second [m]."""
+    """300 s of the 165 m floe with open cracks: the scheduler, what was seen, the deepest corner each second [m]."""
     scheduler, seen, depth = build(load_scenario("basin_2010_floe_165m", OPEN_CRACKS)), Seen(), []
     while scheduler.t_ns < 300_000_000_000:
         seen.on_frame(scheduler.macro_step())
