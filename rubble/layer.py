@@ -60,6 +60,7 @@ class RubbleLayer(Readings):
         self.joints = no_joints()
         self.cleared: list[int] = []  #: numbers of the plates that have left, in order
         self.gone = Lost()  #: what they took along
+        self.parting = np.zeros((2, 3))  #: mean force of those that left in the last window, rotating and sliding [N]
         self.crushed = Lost()  #: what was cut off plates
         self.breaks: list[Break] = []  #: in the last window
         self.time = 0.0  #: [s]
@@ -234,10 +235,12 @@ class RubbleLayer(Readings):
         x, y, z = self.store.plates.position[:-1].T
         place = self.runner.moving.place
         inside = self.domain.holds(x - place[0], y - place[1], z)
+        self.parting = np.zeros((2, 3))
         if inside.all():
             return
-        out = [self.store.list[i] for i in np.flatnonzero(~inside)]
-        for plate in out:
+        out, load = [self.store.list[i] for i in np.flatnonzero(~inside)], self.load_on_structure[~inside]
+        for plate, force in zip(out, load, strict=True):
+            self.parting[int(plate.sliding)] += force
             self.cleared.append(plate.id)
             self.gone.take(plate.mass, plate.momentum, self.runner.energy_of(plate))
         self.store.take(*out)

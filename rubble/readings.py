@@ -26,6 +26,7 @@ class Readings:
     table_of_sections: SectionTable
     pitch: float
     origin: float
+    parting: Array
 
     def key_at(self, y: float) -> int:
         """Number of the section that holds y."""
@@ -73,9 +74,12 @@ class Readings:
         return table.loads(self.store, self.runner.window)
 
     def load_of(self, *, sliding: bool) -> Array:
-        """Sum of the mean forces of the plates that slide, or of those that rotate (3,) [N]."""
+        """Sum of the mean forces of the plates that slide, or of those that rotate (3,) [N].
+
+        Those that have left at the end of the window were there in it.
+        """
         phase = table.sliding(self.store) == sliding
-        return np.asarray(self.load_on_structure[phase].sum(axis=0))
+        return np.asarray(self.load_on_structure[phase].sum(axis=0) + self.parting[int(sliding)])
 
     @property
     def wrench_on_structure(self) -> Array:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coupling.structure import cone
-from rubble.cut import revolved
+from rubble.cut import plane, revolved
 from rubble.domain import Domain
 from rubble.layer import RubbleLayer
 from rubble.outline import convex_parts
@@ -65,6 +65,27 @@ def test_a_steady_feed_leaves():
 def test_a_steady_feed_comes_to_a_steady_state():
     layer, fed, rows = feed(1800.0)
     check_steady(layer, fed, rows, 0.03)
+
+
+@pytest.mark.parametrize("sliding", [False, True])
+def test_the_load_of_a_block_that_leaves_counts_until_it_has_left(sliding):
+    """It leaves at the end of a window in which it pressed on the structure; the next one carries nothing."""
+    wall = np.array([(0.0, -50.0), (10.0, -50.0), (10.0, 50.0), (0.0, 50.0)])
+    physics = RubblePhysics(rho_i=900.0, rho_w=1e-9, g=0.0, thickness=H)
+    layer = RubbleLayer(physics, WIDTH, domain=Domain(x_max=-0.5), solids=lambda y: plane([wall]))
+    box = np.array([(-4.0, -1.0), (0.0, -1.0), (0.0, 1.0), (-4.0, 1.0)])
+    number = layer.add_block(0, Slab(box, np.array([-4.0, 0.0]), np.array([WIDTH]), 900.0, 0.0))
+    thrust(layer, number, (PUSH, 0.0, 0.0))
+    layer.advance(WINDOW)
+    plate = layer.block(number)
+    plate.sliding, layer.domain = sliding, Domain(x_max=-2.1)
+    layer.advance(WINDOW)
+    assert layer.cleared == [number]
+    assert layer.load_of(sliding=sliding) == pytest.approx([PUSH, 0.0, 0.0], rel=1e-6, abs=1e-6 * PUSH)
+    assert layer.load_of(sliding=not sliding) == pytest.approx(0.0, abs=0.0)
+    assert layer.wrench_on_structure[:3] == pytest.approx(layer.load_of(sliding=sliding), rel=1e-12)
+    layer.advance(WINDOW)
+    assert layer.load_of(sliding=sliding) == pytest.approx(0.0, abs=0.0)
 
 
 def test_a_block_passes_under_the_toe():
