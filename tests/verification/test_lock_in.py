@@ -29,7 +29,7 @@ def test_a_short_run_that_is_coupled():
     result = run("lock-in", quick=True)[0]
     assert result.passed
     found = {q.name: q.value for q in result.quantities}
-    assert found["largest displacement"][0] > 1e-3
+    assert np.min(found["largest displacement"]) > 1e-3  # of every draw, at every ratio
 
 
 def two_draws():
