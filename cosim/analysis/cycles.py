@@ -10,6 +10,7 @@ import numpy as np
 
 from cosim.analysis.instants import Kinds, between, encounters, events_of, first_contact, largest, peaks_in, within
 from cosim.analysis.run_data import RunData
+from cosim.analysis.volumes import since
 from coupling.interface import NS, Array
 
 
@@ -122,8 +123,8 @@ def rubble_mean(run: RunData, last: float = 1.0) -> float | None:
 
 
 def _since(run: RunData, last: float) -> int:
-    """Window with whose end the last share of the run's time begins."""
-    return min(int(np.searchsorted(run.t_ns, round(float(run.t_ns[-1]) * (1.0 - last)))), len(run.t_ns) - 2)
+    """As `since`, with a window behind it."""
+    return min(since(run.t, last), len(run.t_ns) - 2)
 
 
 def _rate(run: RunData, names: tuple[str, ...], cycle: int | None, event: Kinds, share: float) -> float | None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coupling.interface import NS
+from coupling.interface import NS, Array
 
 POINTS = 200  #: at most so many times are told
 LAST = 1.0 / 3.0  #: share of a run over whose end rates are taken
@@ -25,7 +25,7 @@ def volumes(
     t, kept, gone = np.asarray(t_ns) / NS, np.asarray(stored, np.float64), np.asarray(cleared, np.float64)
     fed = kept + gone
     at = np.unique(np.linspace(0, len(t) - 1, min(len(t), POINTS)).astype(int))
-    first = int(np.searchsorted(t, t[-1] * (1.0 - LAST)))
+    first = since(t, LAST)
     span = float(t[-1] - t[first])
     rates = {
         f"{name}_rate": float(mass[-1] - mass[first]) / span if span > 0.0 else 0.0
@@ -33,3 +33,8 @@ def volumes(
     }
     series = {name: (mass[at] / density).tolist() for name, mass in (("fed", fed), ("stored", kept), ("cleared", gone))}
     return {"time": t[at].tolist(), **series, **rates}
+
+
+def since(t: Array, last: float) -> int:
+    """The window with whose end the last share of the time begins; ``t`` (n,) ends of windows [s]."""
+    return int(np.searchsorted(t, t[-1] * (1.0 - last)))

@@ -179,15 +179,8 @@ def test_cells_that_have_come_loose_take_no_energy_from_the_cone():
 
 def deepest(layer):
     """Largest depth of a corner of a piece in the cone [m]."""
-    plates, pieces, depth = layer.store.plates, layer.store.tables.pieces, 0.0
-    of_piece = np.repeat(np.arange(len(pieces.plate)), np.diff(pieces.offset))
-    plate = pieces.plate[of_piece]
-    for side in (-0.5, 0.5):
-        y = pieces.y[of_piece] + side * pieces.width[of_piece]
-        own = np.column_stack([pieces.corners[:, 0], y, pieces.corners[:, 1]])
-        x, y, z = (plates.position[plate] + np.einsum("nij,nj->ni", plates.rotation[plate], own)).T
-        depth = max([depth, *(depth_at(layer.runner.body, *at)[0] for at in zip(np.hypot(x, y), z, strict=True))])
-    return depth
+    x, y, z = layer.corners.T
+    return max((depth_at(layer.runner.body, *at)[0] for at in zip(np.hypot(x, y), z, strict=True)), default=0.0)
 
 
 @pytest.mark.slow
@@ -230,7 +223,7 @@ def test_with_open_cracks_the_165_m_floe_with_its_rubble_runs_for_five_minutes(f
     strict=True, reason="two pieces stand on end between the sheet and the shaft under the cone and crush"
 )
 def test_with_open_cracks_no_window_carries_more_than_the_basin_ever_saw(five_minutes):
-    """24 MN in the basin; 39 MN here, 14 s long, on a part of the structure that ice reaches with open cracks alone."""
+    """24 MN in the basin; 39 MN here. The pieces were seen in the build before: 35 MN, above 12 MN for 14 s."""
     _, seen, _ = five_minutes
     assert np.abs(seen.load).max() < 30e6
 
