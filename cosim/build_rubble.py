@@ -40,6 +40,7 @@ def build_rubble(scenario: Scenario, structure: Structure, grid: Grid) -> Rubble
         thickness=i.thickness,
         iterations=r.iterations,
         substep=r.substep,
+        threads=r.threads,
         backfill=r.backfill,
         filling_time=r.filling_time,
         contact_strength=i.compressive_strength if r.contact_strength is None else r.contact_strength,

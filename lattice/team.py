@@ -6,6 +6,9 @@ has the same bits as two that do one each.
 
 The last thread to come to `together` is waited for in a busy loop, which costs a few hundred nanoseconds where each
 thread has a core; where it has none, the waiting one gives its own core away.
+
+The same file stands in every package whose kernels are worked on so, because packages of solvers do not import each
+other; a test keeps the copies equal but for the name of their package.
 """
 
 from __future__ import annotations
@@ -21,11 +24,11 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 from lattice.compiled import compiled
-from lattice.explicit.layout import LANES, aligned
-from lattice.grid import Array, IntArray
 
+LINE = 8  #: numbers in a cache line
 TILES = 2  #: parts of the work, and the most threads that a team has
 PATIENCE = 4000  #: looks at the others, some microseconds, after which a thread that waits gives its core away
 
@@ -35,9 +38,16 @@ class Team(NamedTuple):
 
     member: int  #: which it is
     size: int  #: threads in all
-    arrived: IntArray  #: (TILES * LANES,) how often each has come to `together`, each on a cache line of its own
+    arrived: NDArray[np.int64]  #: (TILES * LINE,) how often each has come to `together`, on a cache line of its own
     yielding: int  #: address of a function without arguments that gives the core away
-    given: Array  #: room for what parts leave to each other; none where there is one thread
+    given: NDArray[np.float64]  #: room for what parts leave to each other; none where there is one thread
+
+
+def _at_a_line(count: int, kind: type[np.generic]) -> NDArray[Any]:
+    """So many zeros, of 8 bytes each, of which the first is the first of a cache line."""
+    raw = np.zeros(count + LINE, kind)
+    start = -raw.ctypes.data // 8 % LINE
+    return raw[start : start + count]
 
 
 def _address() -> int:
@@ -92,18 +102,18 @@ def together(team: Team) -> None:
     """Goes on when all threads of the team have come here, and sees what they have written."""
     if team.size == 1:
         return
-    own = team.arrived[team.member * LANES] + 1
-    shown(team.arrived, team.member * LANES, own)
+    own = team.arrived[team.member * LINE] + 1
+    shown(team.arrived, team.member * LINE, own)
     for other in range(team.size):
         looks = 0
-        while seen(team.arrived, other * LANES) < own:
+        while seen(team.arrived, other * LINE) < own:
             looks += 1
             if looks > PATIENCE:
                 looks = 0
                 called(team.yielding)
 
 
-NONE, NO_ROOM = np.zeros(TILES * LANES, np.int64), aligned(LANES)
+NONE, NO_ROOM = np.zeros(TILES * LINE, np.int64), _at_a_line(LINE, np.float64)
 ALONE = Team(0, 1, NONE, 0, NO_ROOM)  #: one thread that does all
 
 
@@ -126,9 +136,8 @@ class Crew:
             if self._process != os.getpid():  # threads do not come along into a process that was forked
                 self._begin()
             if len(self._room) < room:
-                self._room = aligned(room)
-            arrived = np.zeros((TILES + 1) * LANES, np.int64)
-            arrived = arrived[-arrived.ctypes.data // 8 % LANES :][: TILES * LANES]
+                self._room = _at_a_line(room, np.float64)
+            arrived = _at_a_line(TILES * LINE, np.int64)
             teams = [Team(k, size, arrived, self._yielding, self._room) for k in range(size)]
             others = [self._pool.submit(kernel, team) for team in teams[1:]]
             first = kernel(teams[0])

@@ -18,7 +18,7 @@ from rubble.gather import Scene
 from rubble.geometry import area_moments, intersection
 from rubble.outlines import apart, box_of, boxes_apart, put_outline
 from rubble.plates import times, turn_back
-from rubble.rows import SHEET, Rows, go_on, set_arms
+from rubble.rows import SHEET, Rows, go_on
 from rubble.sides import NEAR, directions
 from rubble.slices import CORNERS, Pieces, end_along_y
 from rubble.slots import SHEET_SLOT
@@ -72,7 +72,6 @@ def bank_rows(scene: Scene, banks: Banks, rows: Rows, old: Rows, found: int, bef
         point.depth, point.most = depth, scene.strength * banks.area[k]
         locate(point, edges.nodes, edges.offset[e], edges.offset[e + 1])
         directions(rows, c, n)
-        set_arms(rows, c, plates, edges)
         while last < before and _earlier(old.point[last], s, e):
             last += 1
         same = last < before and old.point[last].feature == BANK

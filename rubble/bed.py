@@ -14,7 +14,7 @@ from rubble.compiled import compiled
 from rubble.corners import bounds, first_of, go_on_from
 from rubble.gather import Scene
 from rubble.outlines import put_outline
-from rubble.rows import BED, Rows, set_arms, set_way
+from rubble.rows import BED, Rows, set_way
 from rubble.slots import BED_SLOT
 
 
@@ -44,7 +44,6 @@ def bed_rows(scene: Scene, both: tuple[Rows, Rows], found: int, before: int, cut
             set_way(rows.way[c, 0], 0.0, 0.0, 1.0)
             set_way(rows.way[c, 1], -1.0, 0.0, 0.0)
             set_way(rows.way[c, 2], 0.0, -1.0, 0.0)
-            set_arms(rows, c, plates, scene.edges)
             last = go_on_from(rows, c, old, last, before, cut)
             c += 1
         bounds(scene, rows, start, c, (scene.widths[s], 0.0))

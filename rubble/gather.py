@@ -15,7 +15,7 @@ from rubble.geometry import chord
 from rubble.moving import Moving, aside, from_axes, turned
 from rubble.plates import Plates, times
 from rubble.pointers import ArbiterLayout, BodyLayout, integer, real, set_integer, short
-from rubble.rows import ICE, SHEET, STEEPEST, STRUCTURE, Rows, go_on, set_arms, set_normal
+from rubble.rows import ICE, SHEET, STEEPEST, STRUCTURE, Rows, go_on, set_normal
 from rubble.slices import Pieces, Slices, strayed
 from rubble.slots import SHEET_SLOT, STRUCTURE_SLOT, UNKNOWN, Slots, slot_of
 
@@ -87,7 +87,6 @@ def gather(scene: Scene, rows: Rows, old: Rows, stamp: int) -> int:
             for p in range(points):
                 _row(scene, rows, count, i, arbiter, contact + p * layout.size, a, b)
                 if rows.point[count].depth >= 0.0:
-                    set_arms(rows, count, scene.plates, scene.edges)
                     count += 1
             if count == start:
                 continue

@@ -69,24 +69,31 @@ def second_moments(polygon: Array) -> SecondMoments:
     return SecondMoments(xx, zz, xz)
 
 
-@compiled(f"{POLYGON}({POLYGON}, float64, float64, float64)", nogil=True)
-def clip(polygon: Array, nx: float, nz: float, c: float) -> Array:
-    """The part of a convex (k, 2) polygon on which ``nx x + nz z <= c``; (m, 2), m = 0 if nothing is left."""
-    k = polygon.shape[0]
-    out = np.empty((k + 1, 2))
+@compiled(nogil=True, borrows=True)
+def clip_into(out: Array, polygon: Array, k: int, nx: float, nz: float, c: float) -> int:
+    """As `clip`, of the first k corners and into ``out`` (k + 1 or more, 2); returns how many corners are left."""
     m = 0
     for i in range(k):
         j = i + 1 if i + 1 < k else 0
         di = nx * polygon[i, 0] + nz * polygon[i, 1] - c
         dj = nx * polygon[j, 0] + nz * polygon[j, 1] - c
         if di <= 0.0 and m <= k:
-            out[m] = polygon[i]
+            out[m, 0], out[m, 1] = polygon[i, 0], polygon[i, 1]
             m += 1
         if (di < 0.0 < dj or dj < 0.0 < di) and m <= k:
             s = di / (di - dj)
-            out[m] = polygon[i] + s * (polygon[j] - polygon[i])
+            out[m, 0] = polygon[i, 0] + s * (polygon[j, 0] - polygon[i, 0])
+            out[m, 1] = polygon[i, 1] + s * (polygon[j, 1] - polygon[i, 1])
             m += 1
-    return out[:m].copy()
+    return m
+
+
+@compiled(f"{POLYGON}({POLYGON}, float64, float64, float64)", nogil=True)
+def clip(polygon: Array, nx: float, nz: float, c: float) -> Array:
+    """The part of a convex (k, 2) polygon on which ``nx x + nz z <= c``; (m, 2), m = 0 if nothing is left."""
+    k = polygon.shape[0]
+    out = np.empty((k + 1, 2))
+    return out[: clip_into(out, polygon, k, nx, nz, c)].copy()
 
 
 @compiled(nogil=True, borrows=True)
@@ -114,13 +121,15 @@ def submerged(polygon: Array) -> Array:
 @compiled(f"{POLYGON}({POLYGON}, {POLYGON})", nogil=True)
 def intersection(polygon: Array, convex: Array) -> Array:
     """Common part of two convex counter-clockwise polygons; (0, 2) if they do not meet."""
-    out = polygon.copy()
-    for i in range(convex.shape[0]):
-        j = i + 1 if i + 1 < convex.shape[0] else 0
+    m, sides = polygon.shape[0], convex.shape[0]
+    now, new = np.empty((m + sides, 2)), np.empty((m + sides, 2))
+    now[:m] = polygon
+    for i in range(sides):
+        j = i + 1 if i + 1 < sides else 0
         nx, nz = convex[j, 1] - convex[i, 1], convex[i, 0] - convex[j, 0]
-        if out.shape[0] > 0:
-            out = clip(out, nx, nz, nx * convex[i, 0] + nz * convex[i, 1])
-    return out
+        m = clip_into(new, now, m, nx, nz, nx * convex[i, 0] + nz * convex[i, 1])
+        now, new = new, now
+    return now[:m].copy()
 
 
 @compiled(f"{POLYGON}({POLYGON}, float64, float64, float64, float64, float64)", nogil=True)

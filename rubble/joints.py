@@ -10,7 +10,7 @@ from rubble.arrays import Array, IntArray
 from rubble.compiled import compiled
 from rubble.gather import Scene
 from rubble.plates import times
-from rubble.rows import HOLDS, JOINT, Rows, set_arms, set_way
+from rubble.rows import HOLDS, JOINT, Rows, set_way
 
 TAKEN_OUT = 0.1  #: share of the gap in a joint that is closed in a sub-step
 
@@ -53,5 +53,4 @@ def joint_rows(scene: Scene, joints: Joints, rows: Rows, old: Rows, found: int, 
             gap = joints.anchor[j, d] - (point.x if d == 0 else (point.y if d == 1 else point.z))
             way.target = joints.velocity[j, d] + TAKEN_OUT * gap / scene.dt
             way.impulse = old.way[o, d].impulse if o >= 0 and old.point[o].kind == JOINT else 0.0
-        set_arms(rows, c, plates, scene.edges)
     return int(found + n)

@@ -6,6 +6,8 @@ from dataclasses import dataclass, fields
 from math import inf, isfinite, sqrt
 from typing import Literal
 
+from rubble.team import TILES
+
 RATE_DEPENDENT = "rate-dependent"  #: friction after Lishman and Polojarvi (2015), see `friction.rate_dependent`
 Friction = float | Literal["rate-dependent"]
 Backfill = Literal["full", "none", "filling"]
@@ -34,6 +36,7 @@ class RubblePhysics:
     slop_ratio: float = 0.005  #: allowed overlap of two shapes over ice thickness
     iterations: int = 30  #: of the impulse solver; at least the length of a chain of blocks
     substep: float = 0.005  #: constant [s]
+    threads: int = 1  #: that share the contacts of a large pile, to the same bits
     align_tolerance: float = 0.0873  #: a block is aligned within this angle of the slope [rad]
     backfill: Backfill = "full"  #: whether the top of a new block floods: at once, never, or over `filling_time`
     filling_time: float = 5.0  #: from the first water over the edge until the top carries its whole head [s]
@@ -56,6 +59,8 @@ class RubblePhysics:
                     raise ValueError(f"rubble.backfill_level is {value}; water on a block stands at z <= 0")
             elif not value >= 0 or (not isfinite(value) and f.name not in _MAY_BE_INFINITE):
                 raise ValueError(f"rubble.{f.name} is {value}; it must be a number >= 0")
+        if self.threads not in range(1, TILES + 1):
+            raise ValueError(f"rubble.threads is {self.threads}; give 1 to {TILES}")
         for name in _POSITIVE:
             if getattr(self, name) == 0:
                 raise ValueError(f"rubble.{name} is 0; it must be > 0")

@@ -24,7 +24,7 @@ from rubble.gather import Scene
 from rubble.moving import aside, from_axes, own_axes, turned
 from rubble.plates import times
 from rubble.round import Spot, deepest, is_beside, is_far, spot_at, turns_outwards
-from rubble.rows import STRUCTURE, Rows, set_arms, set_normal
+from rubble.rows import STRUCTURE, Rows, set_normal
 from rubble.slices import CORNERS
 from rubble.slots import ROUND_SLOT
 
@@ -236,7 +236,6 @@ def _rows_of_all(scene: Scene, both: tuple[Rows, Rows], found: int, before: int,
             point.a, point.b, point.edge, point.kind = scene.plates.moved.shape[0] - 1, slices.plate[s], -1, STRUCTURE
             point.slot_a, point.slot_b = ROUND_SLOT, pieces.number[piece]
             point.feature = FEATURES * pieces.worn[piece] + feature
-            set_arms(rows, c, scene.plates, scene.edges)
             last = go_on_from(rows, c, old, last, before, False)
             c += 1
         bounds(scene, rows, start, c, (scene.widths[s], deepest_chord(scene, outline, rows, start, c)))

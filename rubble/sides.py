@@ -19,7 +19,7 @@ from rubble.gather import Scene
 from rubble.geometry import AreaMoments, area_moments, intersection
 from rubble.outlines import apart, box_of, boxes_apart, put_outline
 from rubble.plates import times, turn_back
-from rubble.rows import ICE, Rows, go_on, set_arms, set_way
+from rubble.rows import ICE, Rows, go_on, set_way
 from rubble.slices import CORNERS, Pieces, end_along_y
 
 SIDE = -1  #: marks a row of two sides
@@ -70,7 +70,6 @@ def side_rows(scene: Scene, sides: Sides, rows: Rows, old: Rows, found: int, bef
         point.x, point.y, point.z = 0.5 * (x + u), 0.5 * (y + v), 0.5 * (z + w)
         point.depth, point.most = depth, scene.strength * sides.area[k]
         directions(rows, c, n)
-        set_arms(rows, c, plates, scene.edges)
         while last < before and _earlier(old.point[last], a, b):
             last += 1
         same = last < before and old.point[last].feature == SIDE

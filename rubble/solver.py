@@ -1,6 +1,6 @@
 """Impulses of all contacts over all sections: projected Gauss-Seidel with Coulomb's cone.
 
-Rows are solved one after the other, in the order in which they stand, each with what the others have found so far:
+Rows are solved one after the other, part by part (see `halves`), each with what the others have found so far:
 
     normal    0 <= J_n <= most, so that u_n reaches its target (restitution)
     friction  |(J_t, J_s)| <= mu J_n, against the slip, on both ends
@@ -16,11 +16,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rubble.arrays import Record
+from rubble.arrays import IntArray, Record
 from rubble.compiled import compiled
 from rubble.edges import Edges, push_edge, push_sheet, sheet_speed
+from rubble.halves import DEEP, Halves
 from rubble.plates import Plates
 from rubble.rows import STRUCTURE, Rows, speed
+from rubble.team import TILES, Team, together
 
 
 @compiled(nogil=True, borrows=True, forceinline=True)
@@ -40,20 +42,6 @@ def _push(way: Record, a: Record, b: Record, ma: float, mb: float, j: float) -> 
         a.a -= j * way.ta_x
         a.b -= j * way.ta_y
         a.c -= j * way.ta_z
-
-
-@compiled(nogil=True, borrows=True)
-def warm_start(rows: Rows, count: int, plates: Plates, edges: Edges) -> None:
-    """Apply the impulses that the rows have kept from the last sub-step."""
-    motion, inverse = plates.motion, plates.inverse_mass
-    for c in range(count):
-        point = rows.point[c]
-        for d in range(3):
-            way = rows.way[c, d]
-            if way.impulse != 0.0:
-                _push(way, motion[point.a], motion[point.b], inverse[point.a], inverse[point.b], way.impulse)
-                if point.edge >= 0:
-                    push_sheet(edges, point, way, way.impulse)
 
 
 @compiled(nogil=True, borrows=True, forceinline=True)
@@ -111,11 +99,27 @@ def _friction(
 
 
 @compiled(nogil=True, borrows=True)
-def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> None:
-    """All rows once."""
+def _warm_start(rows: Rows, part: IntArray, plates: Plates, edges: Edges) -> None:
+    """Applies the impulses that rows have kept from the last sub-step."""
+    motion, inverse = plates.motion, plates.inverse_mass
+    for i in range(part.shape[0]):
+        c = part[i]
+        point = rows.point[c]
+        for d in range(3):
+            way = rows.way[c, d]
+            if way.impulse != 0.0:
+                _push(way, motion[point.a], motion[point.b], inverse[point.a], inverse[point.b], way.impulse)
+                if point.edge >= 0:
+                    push_sheet(edges, point, way, way.impulse)
+
+
+@compiled(nogil=True, borrows=True)
+def _sweep(rows: Rows, part: IntArray, plates: Plates, edges: Edges, deep: bool) -> None:
+    """All rows of a part once."""
     motion, shift, inverse = plates.motion, plates.shift, plates.inverse_mass
     nodes, moves, shifts, yields = edges.nodes, edges.motion, edges.shift, edges.yields
-    for c in range(count):
+    for at in range(part.shape[0]):
+        c = part[at]
         point, n, t, s = rows.point[c], rows.way[c, 0], rows.way[c, 1], rows.way[c, 2]
         i, k, e = point.a, point.b, point.edge
         a, b, ma, mb = motion[i], motion[k], inverse[i], inverse[k]
@@ -140,16 +144,36 @@ def _sweep(rows: Rows, count: int, plates: Plates, edges: Edges, deep: bool) -> 
 
 
 @compiled(nogil=True, borrows=True)
-def solve(rows: Rows, count: int, plates: Plates, edges: Edges, iterations: int) -> None:
-    """All rows, so many times; the shift of plates and edges starts from none."""
+def begin(rows: Rows, count: int, plates: Plates, edges: Edges, halves: Halves) -> None:
+    """The shift of plates, edges and rows starts from none."""
     for i in range(plates.shift.shape[0]):
         own = plates.shift[i]
         own.x = own.y = own.z = own.a = own.b = own.c = 0.0
     edges.shift[:] = 0.0
-    deep = count < 0
+    halves.ask[DEEP] = 0
     for c in range(count):
         rows.point[c].shift = 0.0
-        deep = deep or rows.point[c].shift_speed > 0.0
-    warm_start(rows, count, plates, edges)
-    for _ in range(iterations):
-        _sweep(rows, count, plates, edges, deep)
+        if rows.point[c].shift_speed > 0.0:
+            halves.ask[DEEP] = 1
+
+
+@compiled(nogil=True, borrows=True)
+def solve(team: Team, rows: Rows, halves: Halves, plates: Plates, edges: Edges, iterations: int) -> None:
+    """All rows, so many times: each of a team its halves, the first one the seam. `begin` has come before."""
+    start, deep = halves.start, halves.ask[DEEP] == 1
+    for k in range(-1, iterations):
+        for half in range(team.member, TILES, team.size):
+            _go_through(k, rows, halves.row[start[half] : start[half + 1]], plates, edges, deep)
+        together(team)
+        if team.member == 0:
+            _go_through(k, rows, halves.row[start[TILES] : start[TILES + 1]], plates, edges, deep)
+        together(team)
+
+
+@compiled(nogil=True, borrows=True, forceinline=True)
+def _go_through(k: int, rows: Rows, part: IntArray, plates: Plates, edges: Edges, deep: bool) -> None:
+    """Sweep ``k`` over a part; before the first one, -1, what the rows have kept."""
+    if k < 0:
+        _warm_start(rows, part, plates, edges)
+    else:
+        _sweep(rows, part, plates, edges, deep)

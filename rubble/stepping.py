@@ -1,4 +1,8 @@
-"""The loop over the sub-steps of a window, compiled: move, find contacts, forces, solve, without Python in between."""
+"""The loop over the sub-steps of a window, compiled: move, find contacts, forces, solve, without Python in between.
+
+Threads of a team all call it. The first one goes through the sub-steps; the others wait, and share what it asks them to
+(`Halves.ask`): finding pairs, section by section, and solving the rows of a large pile, half by half.
+"""
 
 from __future__ import annotations
 
@@ -14,18 +18,22 @@ from rubble.books import book_contacts, book_step, book_structure, kick, outside
 from rubble.compiled import compiled
 from rubble.edges import Edges, push_edge
 from rubble.gather import Scene, gather
+from rubble.halves import TASK, Halves, divide
 from rubble.joints import Joints, joint_rows
+from rubble.moving import move_structure
 from rubble.pairs import find_pairs
 from rubble.plates import Plates, move_all
 from rubble.prisms import round_rows
-from rubble.rows import Rows, Surface, set_laws
+from rubble.rows import Rows, Surface, set_arms, set_law
 from rubble.sides import Sides, side_rows
 from rubble.slices import CORNERS
-from rubble.solver import solve
+from rubble.solver import begin, solve
+from rubble.team import Team, together
 from rubble.water import Hulls, Water, fill_tops, plate_forces
 
 #: what went wrong: a list of pairs was too short, a contact with an unknown body, too few rows
 TOO_MANY, STRANGE, NO_ROOM = -1, -2, -3
+FIND, SET, SOLVE, END = 0, 1, 2, 3  #: what the others of a team are asked to do
 
 
 class Window(NamedTuple):
@@ -51,22 +59,75 @@ class Sums(NamedTuple):
     water: Records  #: (1,) WATER_IMPULSE
     pressure: Array  #: (n, 6) of the last sub-step [N, N m]
     momenta: Array  #: (4, 6) that plates receive, see `books`
-    counted: IntArray  #: (2,) rows of the last sub-step; its number
+    counted: IntArray  #: (3,) rows of the last sub-step; its number; rows that are contacts
 
 
 @compiled(nogil=True)
-def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows, sums: Sums) -> int:
+def advance_substeps(
+    team: Team, n: int, window: Window, scene: Scene, even: Rows, odd: Rows, halves: Halves, sums: Sums
+) -> int:
     """Do ``n`` sub-steps; returns how many were done, fewer where a list must grow first.
 
     A sub-step that found no room has moved the plates, and is gone on with: its contacts are found once more.
     """
+    if team.member > 0:
+        _help(team, window, scene, even, odd, halves, sums.counted)
+        return 0
+    done: int = _advance(team, n, window, scene, even, odd, halves, sums)
+    _ask(team, END, halves)
+    return done
+
+
+@compiled(nogil=True, borrows=True)
+def _ask(team: Team, task: int, halves: Halves) -> None:
+    """The first of a team begins a task with the others."""
+    halves.ask[TASK] = task
+    together(team)
+
+
+@compiled(nogil=True, borrows=True)
+def _help(team: Team, window: Window, scene: Scene, even: Rows, odd: Rows, halves: Halves, counted: IntArray) -> None:
+    """What the others of a team do, until the first one has done all sub-steps."""
+    while True:
+        together(team)
+        task, rows = halves.ask[TASK], even if counted[1] % 2 == 0 else odd
+        if task == END:
+            return
+        if task == SOLVE:
+            solve(team, rows, halves, scene.plates, scene.edges, window.iterations)
+            continue
+        if task == FIND:
+            find_pairs(team, scene)
+        else:
+            set_rows(team, scene, rows, counted, window.surface)
+        together(team)
+
+
+@compiled(nogil=True, borrows=True)
+def set_rows(team: Team, scene: Scene, rows: Rows, counted: IntArray, surface: Surface) -> None:
+    """Arms of all rows and laws of contacts: each of a team its share."""
+    found, contacts = counted[0], counted[2]
+    for c in range(found * team.member // team.size, found * (team.member + 1) // team.size):
+        set_arms(rows, c, scene.plates, scene.edges)
+        if c < contacts:
+            set_law(rows, c, scene.plates, scene.edges, scene.moving, surface, scene.dt)
+
+
+@compiled(nogil=True)
+def _advance(
+    team: Team, n: int, window: Window, scene: Scene, even: Rows, odd: Rows, halves: Halves, sums: Sums
+) -> int:
+    """As `advance_substeps`, in the first thread."""
     plates, edges, dt, books = scene.plates, scene.edges, scene.dt, sums.books[0]
     count = plates.moved.shape[0] - 1
     forces, lowest, corners = np.empty((count, 3, 6)), np.empty(count), np.empty((CORNERS, 2))
     for k in range(n):
         books.stepping += move_all(plates, dt)
         _move_sheet(edges, dt)
-        find_pairs(scene)
+        move_structure(scene.moving, dt)
+        _ask(team, FIND, halves)
+        find_pairs(team, scene)
+        together(team)
         stamp = sums.counted[1] + 1
         cut = stamp == scene.cut
         rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
@@ -83,8 +144,10 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
         if found < 0:
             return NO_ROOM
-        sums.counted[0], sums.counted[1] = found, stamp
-        set_laws(rows, contacts, plates, edges, scene.moving, window.surface, dt)
+        sums.counted[0], sums.counted[1], sums.counted[2] = found, stamp, contacts
+        _ask(team, SET, halves)
+        set_rows(team, scene, rows, sums.counted, window.surface)
+        together(team)
         plate_forces(plates, window.hulls, window.water, forces, lowest)
         _sum_water(forces, dt, sums.water)
         outside(plates, window.hulls, forces, dt, sums.momenta)
@@ -94,7 +157,10 @@ def advance_substeps(n: int, window: Window, scene: Scene, even: Rows, odd: Rows
         _kick_sheet(edges, dt)
         if window.planar:
             _flatten(plates)
-        solve(rows, found, plates, edges, window.iterations)
+        divide(scene, rows, found, halves)
+        begin(rows, found, plates, edges, halves)
+        _ask(team, SOLVE, halves)
+        solve(team, rows, halves, plates, edges, window.iterations)
         if window.planar:
             _flatten(plates)
         book_step(forces, before[0], plates, dt, books)

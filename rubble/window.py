@@ -10,8 +10,8 @@ from rubble.arrays import Array, IntArray, Known
 from rubble.books import BOOKS, GROUND, SHIFT
 from rubble.breaking import Break, Breaking, part
 from rubble.edges import Edges
-from rubble.friction import coefficient
 from rubble.gather import Scene
+from rubble.halves import FEW, halves
 from rubble.joints import Joints
 from rubble.lost import Lost
 from rubble.moving import resting
@@ -20,17 +20,17 @@ from rubble.phases import update_phases
 from rubble.physics import RubblePhysics
 from rubble.piece import Plate
 from rubble.plates import kinetic
-from rubble.rows import Rows, Surface, grown, room
+from rubble.rows import Rows, grown, room, surface_of
 from rubble.sections import SectionTable
 from rubble.shore import Yields, edges_of, keep
 from rubble.slots import ROUND_SLOT
 from rubble.stepping import Sums, Window, advance_substeps
 from rubble.store import Store
+from rubble.team import ALONE, CREW, Team
 from rubble.water import WATER_IMPULSE, potential, water_of
 from rubble.wear import find_bites, take_off
 
 NO_BODY = np.zeros((0, 2))  #: the structure is none of revolution
-BIAS = 0.9**60.0  #: share of an overlap of ice of 3 m that is left after a second: Chipmunk's
 
 
 class Run(NamedTuple):
@@ -58,7 +58,8 @@ class Runner:
         self.planar = False  #: plates move in their x-z plane only, while initial rubble settles
         self.window = 0.0  #: length of the last one [s]
         self._rows: tuple[Rows, Rows] = room(4096), room(4096)
-        self._counted = np.zeros(2, np.int64)
+        self._halves = halves(4096)
+        self._counted = np.zeros(3, np.int64)
         self._neighbours = Neighbours(physics.thickness)
         self._pressure = Known(np.zeros(0, np.int64), np.zeros((0, 6)))  #: of plates by number, see `Sums`
         self.budget: dict[str, Array] = {}
@@ -96,7 +97,7 @@ class Runner:
         sides, banks = no_neighbours() if self.planar else self._neighbours.find(scene)
         window = Window(
             iterations=int(self.physics.iterations),
-            surface=self._surface(),
+            surface=surface_of(self.physics),
             water=self.water,
             hulls=tables.hulls,
             thrust=tables.thrust,
@@ -116,12 +117,21 @@ class Runner:
         """Do ``n`` sub-steps of the window that has begun. RuntimeError if their contacts cannot be found."""
         done, run = 0, self._run
         while done < n:
-            step = advance_substeps(n - done, run.window, run.scene, *self._rows, run.sums)
+            step = self._together(n - done, run)
             if step < 0:
                 raise RuntimeError(f"rubble: {WRONG[step]} in a sub-step; take out blocks that overlap")
             done += step
             self._make_room()
         self.window += n * self.physics.substep
+
+    def _together(self, n: int, run: Run) -> int:
+        """As `advance_substeps`, on two threads where the physics asks for them and the pile is large."""
+
+        def go(team: Team) -> Any:
+            return advance_substeps(team, n, run.window, run.scene, *self._rows, self._halves, run.sums)
+
+        alone = self.physics.threads == 1 or self.contacts < FEW
+        return int(go(ALONE) if alone else CREW.run(go, self.physics.threads, 0))
 
     def end(self, store: Store, sections: SectionTable) -> None:
         """The window ends."""
@@ -175,11 +185,6 @@ class Runner:
             body=NO_BODY if self.planar else self.body,
         )
 
-    def _surface(self) -> Surface:
-        p = self.physics
-        bias, mu = 1.0 - BIAS ** (p.substep / p.pace), (coefficient(p.mu_ice_ice), coefficient(p.mu_structure))
-        return Surface(*mu, p.mu_bed, p.restitution, bias, p.slop)
-
     def _rename(self, new: IntArray) -> None:
         """Slices have new numbers; rows of slices that are gone are no first guess any more."""
         for rows in self._rows:
@@ -193,6 +198,7 @@ class Runner:
         if 2 * int(self._counted[0]) > len(self._rows[0].point):
             larger = 4 * len(self._rows[0].point)
             self._rows = grown(self._rows[0], larger), grown(self._rows[1], larger)
+            self._halves = halves(larger)
 
     def _balance(self, store: Store, run: Run) -> None:
         """Mean forces x and z that carry the plates."""

@@ -157,6 +157,13 @@ def test_the_copies_are_equal(package):
     assert (ROOT / package / "compiled.py").read_bytes() == (ROOT / "lattice" / "compiled.py").read_bytes()
 
 
+def test_teams_are_equal_but_for_the_package():
+    """Of lattice and rubble."""
+    own, other = ((ROOT / package / "team.py").read_text(encoding="utf-8") for package in ("lattice", "rubble"))
+    assert own != other
+    assert own.replace("lattice", "rubble") == other
+
+
 def test_every_kernel_is_compiled_this_way():
     for package in (*COPIES, "cosim"):
         for file in (ROOT / package).rglob("*.py"):

@@ -38,6 +38,9 @@ class Rubble(Section):
     #: constant step of the sections. Default 5 ms (h / 1 m)^0.5, at most that, and a quarter of the default window [s]
     substep: Annotated[Time, Limits("1 us", "1 s", "5 ms")] = None
     iterations: Count = 30  #: of the impulse solver; at least the depth of a chain of blocks
+    #: each on a core of its own, to the same bits: two share the contacts of a pile that has 1000 points of contact or
+    #: more
+    threads: Annotated[int, Field(ge=1, le=2)] = 1
     columns_per_section: Count = 1  #: node columns in one section
     friction_ice_ice: SlipFriction = 0.1  #: block on block and block on sheet; by rate of slip: 0.1 to 0.7
     friction_structure: Friction = 0.1  #: block on structure

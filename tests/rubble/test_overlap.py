@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from rubble.cut import plane
+from rubble.halves import halves
 from rubble.layer import RubbleLayer
 from rubble.physics import RubblePhysics
 from rubble.piece import Slab
 from rubble.plates import orient_all
 from rubble.rows import STRUCTURE
-from rubble.solver import solve
+from rubble.solver import begin, solve
+from rubble.team import ALONE
 
 WIDTH, H, LENGTH = 2.0, 3.0, 6.0
 RIGHT = np.array([(0.0, -50.0), (10.0, -50.0), (10.0, 50.0), (0.0, 50.0)])
@@ -77,7 +79,10 @@ def shifted(force, speed_right, speed_left):
     point["shift_speed"] = np.where(normal < 0.0, speed_right, speed_left)
     plates, mass = layer.store.plates, layer.store.list[0].mass
     rows.way["impulse"][:count], plates.motion["x"][0] = 0.0, force * layer.physics.substep / mass
-    solve(rows, count, plates, layer.runner.edges, 100)
+    parts = halves(count)
+    parts.row[:], parts.start[-1] = np.arange(count), count
+    begin(rows, count, plates, layer.runner.edges, parts)
+    solve(ALONE, rows, parts, plates, layer.runner.edges, 100)
     sides = [normal < 0.0, normal > 0.0]
     shift = [point["shift"][side].sum() for side in sides]
     impulse = [rows.way["impulse"][:count, 0][side].sum() for side in sides]
