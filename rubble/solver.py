@@ -162,11 +162,11 @@ def solve(team: Team, rows: Rows, halves: Halves, plates: Plates, edges: Edges, 
     """All rows, so many times: each of a team its halves, the first one the seam. `begin` has come before."""
     start, deep = halves.start, halves.ask[DEEP] == 1
     for k in range(-1, iterations):
-        for half in range(team.member, TILES, team.size):
-            _go_through(k, rows, halves.row[start[half] : start[half + 1]], plates, edges, deep)
-        together(team)
-        if team.member == 0:
-            _go_through(k, rows, halves.row[start[TILES] : start[TILES + 1]], plates, edges, deep)
+        for part in range(TILES + 1):
+            if part == TILES:
+                together(team)
+            if part % TILES % team.size == team.member:
+                _go_through(k, rows, halves.row[start[part] : start[part + 1]], plates, edges, deep)
         together(team)
 
 

@@ -73,7 +73,54 @@ def advance_substeps(
     if team.member > 0:
         _help(team, window, scene, even, odd, halves, sums.counted)
         return 0
-    done: int = _advance(team, n, window, scene, even, odd, halves, sums)
+    plates, edges, dt, books = scene.plates, scene.edges, scene.dt, sums.books[0]
+    count = plates.moved.shape[0] - 1
+    forces, lowest, corners, done = np.empty((count, 3, 6)), np.empty(count), np.empty((CORNERS, 2)), 0
+    for k in range(n):
+        books.stepping += move_all(plates, dt)
+        _move_sheet(edges, dt)
+        move_structure(scene.moving, dt)
+        _ask(team, FIND, halves)
+        find_pairs(team, scene)
+        together(team)
+        stamp = sums.counted[1] + 1
+        cut = stamp == scene.cut
+        rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
+        gathered = contacts = gather(scene, rows, old, stamp)
+        if contacts >= 0:
+            contacts = side_rows(scene, window.sides, rows, old, contacts, sums.counted[0], cut)
+        if contacts >= 0:
+            contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0], cut)
+        if contacts >= 0:
+            contacts = round_rows(scene, rows, old, contacts, sums.counted[0])
+        if contacts >= 0:
+            contacts = bed_rows(scene, (rows, old), contacts, sums.counted[0], cut and not window.planar, corners)
+        found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
+        if found < 0:
+            done = gathered if gathered < 0 else NO_ROOM
+            break
+        sums.counted[0], sums.counted[1], sums.counted[2] = found, stamp, contacts
+        _ask(team, SET, halves)
+        set_rows(team, scene, rows, sums.counted, window.surface)
+        together(team)
+        plate_forces(plates, window.hulls, window.water, forces, lowest)
+        _sum_water(forces, dt, sums.water)
+        outside(plates, window.hulls, forces, dt, sums.momenta)
+        before = plates.motion.copy(), edges.nodes.copy(), edges.motion.copy()
+        kick(plates, window.hulls, window.thrust, forces, sums.pressure, dt, books)
+        fill_tops(plates, window.water, lowest, dt)
+        _kick_sheet(edges, dt)
+        _flatten(plates, window.planar)
+        divide(scene, rows, found, halves)
+        begin(rows, found, plates, edges, halves)
+        _ask(team, SOLVE, halves)
+        solve(team, rows, halves, plates, edges, window.iterations)
+        _flatten(plates, window.planar)
+        book_step(forces, before[0], plates, dt, books)
+        _book(rows, found, before, scene, window.loaded, sums)
+        done = k + 1
+        if found > 0 and 2 * found > rows.point.shape[0]:
+            break
     _ask(team, END, halves)
     return done
 
@@ -113,64 +160,15 @@ def set_rows(team: Team, scene: Scene, rows: Rows, counted: IntArray, surface: S
             set_law(rows, c, scene.plates, scene.edges, scene.moving, surface, scene.dt)
 
 
-@compiled(nogil=True)
-def _advance(
-    team: Team, n: int, window: Window, scene: Scene, even: Rows, odd: Rows, halves: Halves, sums: Sums
-) -> int:
-    """As `advance_substeps`, in the first thread."""
-    plates, edges, dt, books = scene.plates, scene.edges, scene.dt, sums.books[0]
-    count = plates.moved.shape[0] - 1
-    forces, lowest, corners = np.empty((count, 3, 6)), np.empty(count), np.empty((CORNERS, 2))
-    for k in range(n):
-        books.stepping += move_all(plates, dt)
-        _move_sheet(edges, dt)
-        move_structure(scene.moving, dt)
-        _ask(team, FIND, halves)
-        find_pairs(team, scene)
-        together(team)
-        stamp = sums.counted[1] + 1
-        cut = stamp == scene.cut
-        rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
-        found = gather(scene, rows, old, stamp)
-        if found < 0:
-            return int(found)
-        contacts = side_rows(scene, window.sides, rows, old, found, sums.counted[0], cut)
-        if contacts >= 0:
-            contacts = bank_rows(scene, window.banks, rows, old, contacts, sums.counted[0], cut)
-        if contacts >= 0:
-            contacts = round_rows(scene, rows, old, contacts, sums.counted[0])
-        if contacts >= 0:
-            contacts = bed_rows(scene, (rows, old), contacts, sums.counted[0], cut and not window.planar, corners)
-        found = joint_rows(scene, window.joints, rows, old, contacts, sums.counted[0]) if contacts >= 0 else -1
-        if found < 0:
-            return NO_ROOM
-        sums.counted[0], sums.counted[1], sums.counted[2] = found, stamp, contacts
-        _ask(team, SET, halves)
-        set_rows(team, scene, rows, sums.counted, window.surface)
-        together(team)
-        plate_forces(plates, window.hulls, window.water, forces, lowest)
-        _sum_water(forces, dt, sums.water)
-        outside(plates, window.hulls, forces, dt, sums.momenta)
-        before = plates.motion.copy(), edges.nodes.copy(), edges.motion.copy()
-        kick(plates, window.hulls, window.thrust, forces, sums.pressure, dt, books)
-        fill_tops(plates, window.water, lowest, dt)
-        _kick_sheet(edges, dt)
-        if window.planar:
-            _flatten(plates)
-        divide(scene, rows, found, halves)
-        begin(rows, found, plates, edges, halves)
-        _ask(team, SOLVE, halves)
-        solve(team, rows, halves, plates, edges, window.iterations)
-        if window.planar:
-            _flatten(plates)
-        book_step(forces, before[0], plates, dt, books)
-        book_contacts(rows, found, before, plates, edges, scene.moving, books)
-        book_structure(rows, found, scene.moving)
-        sum_contacts(rows, found, sums.plate, edges.nodes, sums.momenta)
-        sum_bending(rows, found, plates, window.loaded)
-        if found > 0 and 2 * found > rows.point.shape[0]:
-            return k + 1
-    return n
+@compiled(nogil=True, borrows=True)
+def _book(
+    rows: Rows, count: int, before: tuple[Records, Records, Array], scene: Scene, loaded: Loaded, sums: Sums
+) -> None:
+    """What contacts have done in a sub-step; ``before`` as in `book_contacts`."""
+    book_contacts(rows, count, before, scene.plates, scene.edges, scene.moving, sums.books[0])
+    book_structure(rows, count, scene.moving)
+    sum_contacts(rows, count, sums.plate, scene.edges.nodes, sums.momenta)
+    sum_bending(rows, count, scene.plates, loaded)
 
 
 @compiled(nogil=True, borrows=True)
@@ -209,8 +207,8 @@ def _sum_water(forces: Array, dt: float, sums: Records) -> None:
 
 
 @compiled(nogil=True, borrows=True)
-def _flatten(plates: Plates) -> None:
-    """Take what leads out of the plane from all motions."""
-    for i in range(plates.moved.shape[0] - 1):
+def _flatten(plates: Plates, planar: bool) -> None:
+    """Takes what leads out of the plane from all motions, where they are ``planar``."""
+    for i in range(plates.moved.shape[0] - 1 if planar else 0):
         v, s = plates.motion[i], plates.shift[i]
         v.y = v.a = v.c = s.y = s.a = s.c = 0.0
