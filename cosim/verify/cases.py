@@ -48,6 +48,7 @@ from cosim.verify.cracks import (
     hinged_ring,
     narrow_cone,
     pressed_edge,
+    spacing,
     thrust,
     wedge_beams,
 )
@@ -80,6 +81,7 @@ CASES: dict[str, ModuleType] = {
     "wedge-beams": wedge_beams,
     "hinged-ring": hinged_ring,
     "centre-crack": centre_crack,
+    "crack-spacing": spacing,
     "pressed-edge": pressed_edge,
     "cone-breaking": cone_breaking,
     "narrow-cone": narrow_cone,

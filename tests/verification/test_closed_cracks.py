@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cosim.verify import cases
-from cosim.verify.cracks import arch, centre_crack, cone_breaking, friction, hinged_ring, thrust, wedge_beams
+from cosim.verify.cracks import arch, centre_crack, cone_breaking, friction, hinged_ring, spacing, thrust, wedge_beams
 
 CASES = (
     "crack-thrust",
@@ -14,6 +14,7 @@ CASES = (
     "wedge-beams",
     "hinged-ring",
     "centre-crack",
+    "crack-spacing",
     "pressed-edge",
     "cone-breaking",
     "narrow-cone",
@@ -141,3 +142,28 @@ def test_parameters_that_make_no_sense_get_one_line(case, settings, words):
     with pytest.raises(ValueError, match=words) as error:
         cases.run(case, settings, quick=True)
     assert "\n" not in str(error.value)
+
+
+def test_a_strip_without_a_crack_is_not_relieved(monkeypatch):
+    """The wrong twin that shields nothing."""
+    whole = spacing.Strip.of(24, 5.0, spacing.PURE)
+    x, stress = whole.beside(whole.solve(np.ones(25, bool))[0])
+    assert stress[x < 3.0] == pytest.approx(1.0, abs=0.002)  # bilinear elements that bend
+    monkeypatch.setattr(spacing, "cut", lambda *_: (x, stress))
+    names = [name for name, *_ in missed(cases.run("crack-spacing", quick=True)[0])]
+    assert names == ["the same a quarter of a thickness away, all of them"]
+
+
+def test_a_crack_that_relieves_ice_twice_as_far_is_rejected(monkeypatch):
+    """The wrong twin that would keep cracks apart."""
+    right = spacing.cut
+    monkeypatch.setattr(spacing, "cut", lambda *how: (2.0 * right(*how)[0], right(*how)[1]))
+    names = [name for name, *_ in missed(cases.run("crack-spacing", quick=True)[0])]
+    assert names == ["the same a thickness away, all of them"]
+
+
+def test_where_a_hinge_is_open_does_not_depend_on_the_mesh():
+    """And it is near what a section that stays plane says, h - 3 (h / 2 - e), deeper as e grows."""
+    open_to = [[spacing.hinge(n, 3.0, e)[2] for e in (0.25, 0.35, 0.45)] for n in (24, 48)]
+    assert open_to[0] == pytest.approx(open_to[1], abs=1.0 / 24)
+    assert open_to[1] == pytest.approx([0.25, 0.55, 0.85], abs=0.07)
