@@ -1,7 +1,8 @@
 """The loop over the sub-steps of a window, compiled: move, find contacts, forces, solve, without Python in between.
 
-Threads of a team all call it. The first one goes through the sub-steps; the others wait, and share what it asks them to
-(`Halves.ask`): finding pairs, section by section, and solving the rows of a large pile, half by half.
+Threads of a team all call it. The first one goes through the sub-steps; the others wait, and do their share of what it
+asks for (`Halves.ask`): to find pairs, section by section, to set arms and laws of rows, and to solve the rows of a
+large pile, half by half.
 """
 
 from __future__ import annotations
