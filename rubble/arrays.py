@@ -20,9 +20,27 @@ Table = TypeVar("Table", bound=tuple[Any, ...])  #: columns of one length, by na
 Record = Any  #: one row: `numpy.void` in Python, a pointer to the row in a kernel
 
 
+LINE = 64  #: bytes of a cache line
+
+
 def record(*names: str, integers: tuple[str, ...] = ()) -> np.dtype[np.void]:
     """A row of float64 fields, followed by int64 fields; numba reads it without padding."""
     return np.dtype([*((n, np.float64) for n in names), *((n, np.int64) for n in integers)], align=True)
+
+
+def whole_lines(*names: str) -> np.dtype[np.void]:
+    """A row of float64 fields that fills cache lines: what follows the named ones is not used.
+
+    For rows that are written over and over, in no order: none lies in two lines, and no two threads write to one.
+    """
+    return record(*names, *(f"unused_{k}" for k in range(-len(names) % (LINE // 8))))
+
+
+def zeros_at_a_line(count: int, dtype: np.dtype[np.void]) -> Records:
+    """Rows (count,) of zeros, of which the first begins a cache line."""
+    raw = np.zeros(count * dtype.itemsize + LINE, np.uint8)
+    start = -raw.ctypes.data % LINE
+    return raw[start : start + count * dtype.itemsize].view(dtype)
 
 
 def rows(records: Records, first: str | None = None, count: int | None = None) -> Array:

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rubble.arrays import Array, Records, record, rows
+from rubble.arrays import Array, Records, rows, whole_lines, zeros_at_a_line
 from rubble.compiled import compiled
 
 #: velocity of a centre of mass [m/s] and rate of turning [rad/s], fixed axes
-MOTION = record("x", "y", "z", "a", "b", "c")
+MOTION = whole_lines("x", "y", "z", "a", "b", "c")
 
 
 class Plates(NamedTuple):
@@ -41,7 +41,7 @@ class Plates(NamedTuple):
     @property
     def velocity(self) -> Array:
         """(n + 1, 6) of `motion`; a view [m/s], [rad/s]."""
-        return rows(self.motion)
+        return rows(self.motion, "x", 6)
 
 
 def empty(count: int) -> Plates:
@@ -52,8 +52,8 @@ def empty(count: int) -> Plates:
     return Plates(
         position=np.zeros((n, 3)),
         quaternion=still,
-        motion=np.zeros(n, MOTION),
-        shift=np.zeros(n, MOTION),
+        motion=zeros_at_a_line(n, MOTION),
+        shift=zeros_at_a_line(n, MOTION),
         rotation=one,
         moved=np.ones(n),
         inverse_mass=np.zeros(n),
