@@ -18,7 +18,7 @@ from lattice.grid import Array, Grid
 NU = 1.0 / 3.0  #: the normalised load does not depend on it beyond 1e-3: the crack line carries no shear
 
 
-def element(nu: float) -> Array:
+def _element(nu: float) -> Array:
     """Stiffness of a square bilinear element in plane stress, over E t, nodes ordered as in Grid, (8, 8)."""
     C = np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, 0.5 * (1.0 - nu)]]) / (1.0 - nu**2)
     K = np.zeros((8, 8))
@@ -31,18 +31,23 @@ def element(nu: float) -> Array:
     return K
 
 
+def stiffness(grid: Grid) -> sp.csc_matrix:
+    """Of a plane-stress plate of bilinear elements, over E t, x and y node by node, (2 nodes, 2 nodes)."""
+    dof = (grid.cell_nodes[:, :, None] * 2 + np.arange(2)).reshape(-1, 8)
+    places = np.repeat(dof, 8, axis=1).ravel(), np.tile(dof, 8).ravel()
+    return sp.coo_matrix((np.tile(_element(NU).ravel(), grid.cells), places)).tocsc()
+
+
 def mouth_compliance(n: int) -> Array:
     """Half the mouth opening over F / (E t) for cracks of 1 ... n - 4 elements of a plate of n elements, (n - 4,)."""
     grid = Grid(n + 1, n // 2 + 1, 1.0 / n)
-    dof = (grid.cell_nodes[:, :, None] * 2 + np.arange(2)).reshape(-1, 8)
-    places = np.repeat(dof, 8, axis=1).ravel(), np.tile(dof, 8).ravel()
-    K = sp.coo_matrix((np.tile(element(NU).ravel(), grid.cells), places))
+    K = stiffness(grid)
     line = 2 * grid.edge_nodes("y-") + 1
     free = np.setdiff1d(np.arange(2 * grid.nodes), (line[-1] - 1, line[-1], line[-2]))
     loads = np.zeros((2 * grid.nodes, n - 1))
     loads[line[:-2], np.arange(n - 1)] = 1.0
     S = np.zeros_like(loads)
-    S[free] = splu(K.tocsc()[free][:, free]).solve(loads[free])
+    S[free] = splu(K[free][:, free]).solve(loads[free])
     S = S[line[:-2]]
     return np.array([S[0, 0] - S[0, a:] @ np.linalg.solve(S[a:, a:], S[a:, 0]) for a in range(1, n - 3)])
 

@@ -12,15 +12,14 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rubble.team import LINE, at_a_line
+
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 Records = NDArray[np.void]  #: (n,) rows with named fields; the name of the dtype says which
 Table = TypeVar("Table", bound=tuple[Any, ...])  #: columns of one length, by name
 Record = Any  #: one row: `numpy.void` in Python, a pointer to the row in a kernel
-
-
-LINE = 64  #: bytes of a cache line
 
 
 def record(*names: str, integers: tuple[str, ...] = ()) -> np.dtype[np.void]:
@@ -33,14 +32,12 @@ def whole_lines(*names: str) -> np.dtype[np.void]:
 
     For rows that are written over and over, in no order: none lies in two lines, and no two threads write to one.
     """
-    return record(*names, *(f"unused_{k}" for k in range(-len(names) % (LINE // 8))))
+    return record(*names, *(f"unused_{k}" for k in range(-len(names) % LINE)))
 
 
 def zeros_at_a_line(count: int, dtype: np.dtype[np.void]) -> Records:
     """Rows (count,) of zeros, of which the first begins a cache line."""
-    raw = np.zeros(count * dtype.itemsize + LINE, np.uint8)
-    start = -raw.ctypes.data % LINE
-    return raw[start : start + count * dtype.itemsize].view(dtype)
+    return at_a_line(count * dtype.itemsize // 8, np.float64).view(dtype)
 
 
 def rows(records: Records, first: str | None = None, count: int | None = None) -> Array:

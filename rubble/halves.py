@@ -33,8 +33,10 @@ class Halves(NamedTuple):
 
 
 def halves(room: int) -> Halves:
-    """For so many rows."""
-    return Halves(np.zeros(room, np.int64), np.zeros(TILES + 2, np.int64), np.zeros(2, np.int64))
+    """For so many rows, all of them in the seam until they are divided."""
+    start = np.zeros(TILES + 2, np.int64)
+    start[-1] = room
+    return Halves(np.arange(room), start, np.zeros(2, np.int64))
 
 
 @compiled(nogil=True, borrows=True)

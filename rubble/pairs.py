@@ -10,7 +10,7 @@ from rubble.gather import Scene
 from rubble.moving import own_axes
 from rubble.plates import times
 from rubble.pointers import set_integer, set_real, step_space
-from rubble.team import Team
+from rubble.team import Team, together
 
 
 @compiled(nogil=True, borrows=True)
@@ -25,6 +25,7 @@ def find_pairs(team: Team, scene: Scene) -> None:
             _place_edge(scene, i)
         set_integer(sections.pairs[i] + COUNT, 0)
         step_space(sections.step, sections.space[i], scene.dt)
+    together(team)
 
 
 @compiled(nogil=True, borrows=True, forceinline=True)

@@ -83,7 +83,6 @@ def advance_substeps(
         move_structure(scene.moving, dt)
         _ask(team, FIND, halves)
         find_pairs(team, scene)
-        together(team)
         stamp = sums.counted[1] + 1
         cut = stamp == scene.cut
         rows, old = (even, odd) if stamp % 2 == 0 else (odd, even)
@@ -102,8 +101,7 @@ def advance_substeps(
             break
         sums.counted[0], sums.counted[1], sums.counted[2] = found, stamp, contacts
         _ask(team, SET, halves)
-        set_rows(team, scene, rows, sums.counted, window.surface)
-        together(team)
+        _set_rows(team, scene, rows, sums.counted, window.surface)
         plate_forces(plates, window.hulls, window.water, forces, lowest)
         _sum_water(forces, dt, sums.water)
         outside(plates, window.hulls, forces, dt, sums.momenta)
@@ -143,22 +141,21 @@ def _help(team: Team, window: Window, scene: Scene, even: Rows, odd: Rows, halve
             return
         if task == SOLVE:
             solve(team, rows, halves, scene.plates, scene.edges, window.iterations)
-            continue
-        if task == FIND:
+        elif task == FIND:
             find_pairs(team, scene)
         else:
-            set_rows(team, scene, rows, counted, window.surface)
-        together(team)
+            _set_rows(team, scene, rows, counted, window.surface)
 
 
 @compiled(nogil=True, borrows=True)
-def set_rows(team: Team, scene: Scene, rows: Rows, counted: IntArray, surface: Surface) -> None:
+def _set_rows(team: Team, scene: Scene, rows: Rows, counted: IntArray, surface: Surface) -> None:
     """Arms of all rows and laws of contacts: each of a team its share."""
     found, contacts = counted[0], counted[2]
     for c in range(found * team.member // team.size, found * (team.member + 1) // team.size):
         set_arms(rows, c, scene.plates, scene.edges)
         if c < contacts:
             set_law(rows, c, scene.plates, scene.edges, scene.moving, surface, scene.dt)
+    together(team)
 
 
 @compiled(nogil=True, borrows=True)

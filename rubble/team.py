@@ -43,7 +43,7 @@ class Team(NamedTuple):
     given: NDArray[np.float64]  #: room for what parts leave to each other; none where there is one thread
 
 
-def _at_a_line(count: int, kind: type[np.generic]) -> NDArray[Any]:
+def at_a_line(count: int, kind: type[np.generic]) -> NDArray[Any]:
     """So many zeros, of 8 bytes each, of which the first is the first of a cache line."""
     raw = np.zeros(count + LINE, kind)
     start = -raw.ctypes.data // 8 % LINE
@@ -113,7 +113,7 @@ def together(team: Team) -> None:
                 called(team.yielding)
 
 
-NONE, NO_ROOM = np.zeros(TILES * LINE, np.int64), _at_a_line(LINE, np.float64)
+NONE, NO_ROOM = np.zeros(TILES * LINE, np.int64), at_a_line(LINE, np.float64)
 ALONE = Team(0, 1, NONE, 0, NO_ROOM)  #: one thread that does all
 
 
@@ -136,8 +136,8 @@ class Crew:
             if self._process != os.getpid():  # threads do not come along into a process that was forked
                 self._begin()
             if len(self._room) < room:
-                self._room = _at_a_line(room, np.float64)
-            arrived = _at_a_line(TILES * LINE, np.int64)
+                self._room = at_a_line(room, np.float64)
+            arrived = at_a_line(TILES * LINE, np.int64)
             teams = [Team(k, size, arrived, self._yielding, self._room) for k in range(size)]
             others = [self._pool.submit(kernel, team) for team in teams[1:]]
             first = kernel(teams[0])

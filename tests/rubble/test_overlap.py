@@ -80,7 +80,6 @@ def shifted(force, speed_right, speed_left):
     plates, mass = layer.store.plates, layer.store.list[0].mass
     rows.way["impulse"][:count], plates.motion["x"][0] = 0.0, force * layer.physics.substep / mass
     parts = halves(count)
-    parts.row[:], parts.start[-1] = np.arange(count), count
     begin(rows, count, plates, layer.runner.edges, parts)
     solve(ALONE, rows, parts, plates, layer.runner.edges, 100)
     sides = [normal < 0.0, normal > 0.0]

@@ -16,7 +16,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from cosim.verify.case import CaseResult, Figure, at_most, near, value
-from lattice.edge_crack import NU, element
+from lattice.edge_crack import stiffness
 from lattice.grid import Array, BoolArray, Grid
 
 PARAMETERS: dict[str, Any] = {
@@ -44,10 +44,6 @@ class Strip(NamedTuple):
     def of(cls, n: int, length: float, eccentricity: float) -> Strip:
         """``n`` elements over the thickness."""
         grid = Grid(round(length * n) + 1, n + 1, 1.0 / n)
-        dof = (grid.cell_nodes[:, :, None] * 2 + np.arange(2)).reshape(-1, 8)
-        places = np.repeat(dof, 8, axis=1).ravel(), np.tile(dof, 8).ravel()
-        size = (2 * grid.nodes, 2 * grid.nodes)
-        K = sp.coo_matrix((np.tile(element(NU).ravel(), grid.cells), places), size).tocsc()
         y = np.arange(n + 1) / n
         stress = 12.0 * eccentricity * (0.5 - y) - 1.0
         share = np.zeros(n + 1)  # consistent with a stress that is linear over an element
@@ -55,7 +51,7 @@ class Strip(NamedTuple):
         share[1:] += (stress[:-1] + 2.0 * stress[1:]) / (6.0 * n)
         load = np.zeros(2 * grid.nodes)
         load[2 * grid.edge_nodes("x+")] = share
-        return cls(grid, K, load, float(stress[0]))
+        return cls(grid, stiffness(grid), load, float(stress[0]))
 
     def solve(self, closed: BoolArray) -> tuple[Array, Array]:
         """Displacements (dofs,) and the reactions along x of the nodes at x = 0, where those ``closed`` are held."""
@@ -118,10 +114,8 @@ def _figure(curves: dict[str, tuple[Array, Array]]) -> Figure:
         for name, (x, stress) in curves.items():
             axes.plot(x, stress, "--" if name.startswith("hinge") else "-", label=name)
         x = np.linspace(0.2, 2.0, 100)
-        for sign in (-1.0, 1.0):
-            axes.plot(
-                x, 1.0 + sign * np.exp(-ROOT * x), "k:", lw=1, label=None if sign > 0 else "1 -+ exp(-4.212 x / h)"
-            )
+        for sign, label in ((-1.0, f"1 -+ exp(-{ROOT} x / h)"), (1.0, None)):
+            axes.plot(x, 1.0 + sign * np.exp(-ROOT * x), "k:", lw=1, label=label)
         axes.set(xlabel="distance from the crack x / h", ylabel="stress at the face over that of the beam", xlim=(0, 2))
         axes.legend(fontsize=7)
 
