@@ -13,7 +13,6 @@ from functools import cached_property
 from math import inf, sqrt
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.spatial import cKDTree
 
 from rubble.arrays import Array
@@ -83,6 +82,8 @@ def heap(
 
     def thick(reach: float) -> dict[int, Array]:
         return {k: np.clip(tangent * (reach - s), 0.0, room) for k, s in distance.items()}
+
+    from scipy.optimize import brentq  # takes a tenth of a second to load, and most runs lay no heap
 
     reach = brentq(lambda r: step * sum(float(t.sum()) for t in thick(r).values()) - bulk, nearest, farthest)
     return {k: Flank(x[k], t) for k, t in thick(reach).items() if t.any()}
