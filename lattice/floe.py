@@ -237,14 +237,9 @@ class Floe(ABC):
         """
         self.engine.remove(cells)
 
-    def _release_loose(
-        self, out: Outcome, release: Release, turned: BoolArray | None = None, together: IntArray = NO_PAIRS
-    ) -> None:
-        """Lets pieces go that nothing holds, and those of which every node has ``turned`` (nodes,).
-
-        Of these ``together`` (m, 2) are nodes that leave with each other.
-        """
-        pairs = np.concatenate((self.pairs, together))
+    def _release_loose(self, out: Outcome, release: Release, turned: BoolArray | None = None, *more: IntArray) -> None:
+        """Lets pieces go that are loose or have ``turned`` (nodes,); pairs (m, 2) of ``more`` leave with each other."""
+        pairs = np.concatenate((self.pairs, *more))
         pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share, turned, pairs)
         for piece in pieces:
             live = self.live_cells
