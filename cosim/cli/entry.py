@@ -68,7 +68,7 @@ def options(
 
 
 #: objects between two looks for garbage: libraries and kernels make half a million that stay, and looking through them
-#: as often as Python does takes a sixth of the time until a run begins
+#: as often as Python does takes a tenth of the time until a run begins
 GARBAGE = 50_000
 
 
