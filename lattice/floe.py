@@ -17,7 +17,7 @@ from lattice.cracks.hinges import Hinges, no_hinges
 from lattice.criteria.judge import EVERY, Judge, Standing
 from lattice.criteria.table import THESIS, Criterion
 from lattice.energy import EnergyBooks
-from lattice.fragments import NO_PAIRS, front_rows, loose_pieces
+from lattice.fragments import front_rows, loose_pieces
 from lattice.grid import Array, BoolArray, IntArray
 from lattice.implicit.engine import Engine
 from lattice.loads import Loads, total
@@ -158,7 +158,7 @@ class Floe(ABC):
         out = np.flatnonzero(gone[self.grid.cell_nodes].any(axis=1))
         self.intact[out] = False
         self.engine.remove(out)
-        pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share, pairs=self.pairs)
+        pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share)
         if pieces:
             x, y = self.grid.xy[pieces[0][0]] - self.grid.xy[0]
             raise ValueError(
@@ -197,11 +197,6 @@ class Floe(ABC):
         return self.intact
 
     @property
-    def pairs(self) -> IntArray:
-        """Further nodes that hold together, by two, (m, 2)."""
-        return NO_PAIRS
-
-    @property
     def damage(self) -> Array:
         """How far each cell is broken, 0 to 1, (cells,)."""
         return np.asarray(~self.intact, np.float64)
@@ -237,10 +232,9 @@ class Floe(ABC):
         """
         self.engine.remove(cells)
 
-    def _release_loose(self, out: Outcome, release: Release, turned: BoolArray | None = None, *more: IntArray) -> None:
-        """Lets pieces go that are loose or have ``turned`` (nodes,); pairs (m, 2) of ``more`` leave with each other."""
-        pairs = np.concatenate((self.pairs, *more))
-        pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share, turned, pairs)
+    def _release_loose(self, out: Outcome, release: Release, turned: BoolArray | None = None) -> None:
+        """Lets pieces go that nothing holds, and those of which every node has ``turned`` (nodes,)."""
+        pieces, self.parts = loose_pieces(self.grid, self.joins, self.present, self.held, self.share, turned)
         for piece in pieces:
             live = self.live_cells
             self.present[piece] = False

@@ -1,8 +1,7 @@
 """Pieces of the sheet: connected components of nodes.
 
-Every node owns its tributary ice, two nodes belong together when an intact cell joins them, or the half of a cell that
-lies on one side of its crack. Components therefore partition the ice exactly; a node that nothing joins to another is a
-piece of its own, and a crack costs no ice.
+Every node owns its tributary ice, two nodes belong together when an intact cell joins them. Components therefore
+partition the ice exactly; a node without an intact cell is a piece of its own, and a crack costs no ice.
 """
 
 from __future__ import annotations
@@ -13,18 +12,11 @@ from scipy.sparse.csgraph import connected_components
 
 from lattice.grid import Array, BoolArray, Grid, IntArray
 
-NO_PAIRS = np.empty((0, 2), np.int64)
 
-
-def edges_of(nodes: IntArray) -> IntArray:
-    """Pairs of neighbours in cells with these ``nodes`` (m, 4), (4 m, 2)."""
-    return nodes[:, [[0, 1], [2, 3], [0, 2], [1, 3]]].reshape(-1, 2)
-
-
-def components(grid: Grid, intact: BoolArray, pairs: IntArray = NO_PAIRS) -> IntArray:
-    """Label of the component of each node, (nodes,); ``pairs`` (m, 2) are nodes that halves of cells join."""
+def components(grid: Grid, intact: BoolArray) -> IntArray:
+    """Label of the component of each node, (nodes,)."""
     n = grid.cell_nodes[intact]
-    i, j = np.append(np.repeat(n[:, 0], 3), pairs[:, 0]), np.append(n[:, 1:].ravel(), pairs[:, 1])
+    i, j = np.repeat(n[:, 0], 3), n[:, 1:].ravel()
     graph = sp.coo_matrix((np.ones(len(i), np.int8), (i, j)), shape=(grid.nodes, grid.nodes))
     label: IntArray = connected_components(graph, directed=False)[1].astype(np.int64)
     return label
@@ -37,15 +29,14 @@ def loose_pieces(
     held: BoolArray,
     share: float,
     turned: BoolArray | None = None,
-    pairs: IntArray = NO_PAIRS,
 ) -> tuple[list[IntArray], int]:
     """Pieces that leave the lattice, and the number of parts that stay.
 
     A piece leaves when none of its nodes is held and its area is below `share` of the whole floe; a larger free part
     stays and floats. A part of which every node has ``turned`` leaves in any case. ``present``, ``held`` and ``turned``
-    are per node, ``intact`` and ``pairs`` as in `components`. Pieces come as node numbers, ordered by their first node.
+    are per node. Pieces come as node numbers, ordered by their first node.
     """
-    label = components(grid, intact, pairs)
+    label = components(grid, intact)
     label = np.where(present, label, -1)
     area = np.bincount(label[present], weights=grid.area[present], minlength=label.max() + 1)
     has_held = np.zeros(len(area), bool)

@@ -149,10 +149,9 @@ class SheetPort:
 
     def remains(self) -> list[Fragment]:
         """What is left of the sheet as pieces, one for each part that hangs together; the sheet is used up."""
-        s = self.sheet
-        label = np.where(s.present, components(s.grid, s.joins, s.pairs), -1)
+        label = np.where(self.sheet.present, components(self.sheet.grid, self.sheet.joins), -1)
         parts = [np.flatnonzero(label == k) for k in np.unique(label[label >= 0])]
-        return [fragment(s, self.motion, self.front, nodes) for nodes in parts]
+        return [fragment(self.sheet, self.motion, self.front, nodes) for nodes in parts]
 
     def _meet(self, answer: Answer | None) -> NodeLoad:
         """The load of a window in lockstep."""

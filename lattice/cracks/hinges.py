@@ -31,12 +31,9 @@ def no_hinges(nodes: int) -> Hinges:
     return Hinges(np.empty(0, np.int64), np.zeros(nodes, bool), [], 1)
 
 
-def hinges(
-    grid: Grid, joined: tuple[BoolArray, IntArray], deep: IntArray, present: BoolArray, held: BoolArray, share: float
-) -> Hinges:
-    """Of a sheet whose nodes are ``joined`` by whole cells (cells,) and in pairs (m, 2); cells ``deep`` are cracked."""
-    whole, pairs = joined
-    label = np.where(present, components(grid, whole, pairs), -1)
+def hinges(grid: Grid, whole: BoolArray, deep: IntArray, present: BoolArray, held: BoolArray, share: float) -> Hinges:
+    """Of a sheet in which ``whole`` cells (cells,) join their nodes and cells ``deep`` are cracked deep."""
+    label = np.where(present, components(grid, whole), -1)
     area = np.bincount(label[present], weights=grid.area[present], minlength=int(label.max()) + 1)
     has_held = np.zeros(len(area), bool)
     has_held[label[present & held]] = True

@@ -21,7 +21,6 @@ from lattice.explicit.forces import Touch
 from lattice.explicit.window import Window
 from lattice.explicit_sheet import CONTACT_TIME, LIVELY, ExplicitSheet
 from lattice.floe import LOOSE, Release
-from lattice.fragments import edges_of
 from lattice.grid import Array, BoolArray, IntArray
 from lattice.outcome import TURNED_TOO_FAR, Outcome
 from lattice.sheet import TURNED
@@ -106,13 +105,8 @@ class CrackingSheet(ExplicitSheet):
     def joins(self) -> BoolArray:
         """Elastic cells, and layered ones that are not parted, (cells,)."""
         joins = self.intact.copy()
-        joins[self.engine.layered.cell[~self._parted().any(axis=1)]] = True
+        joins[self.engine.layered.cell[~self._parted()]] = True
         return joins
-
-    @property
-    def pairs(self) -> IntArray:
-        """Nodes on the same side of a crack that has parted their cell, (m, 2)."""
-        return self.engine.layered.halves(self.grid.cell_nodes, self._parted())
 
     @property
     def damage(self) -> Array:
@@ -128,19 +122,13 @@ class CrackingSheet(ExplicitSheet):
         deep = layered.cell[layered.depth >= DEEP]
         if not len(deep):
             return no_hinges(self.grid.nodes)
-        whole, pairs = self._between_hinges()
-        key = whole.tobytes() + pairs.tobytes() + deep.tobytes() + self.present.tobytes()
+        whole = self.joins
+        key = whole.tobytes() + deep.tobytes() + self.present.tobytes()
         if self._hinges is None or self._hinges[0] != key:
-            self._hinges = key, hinges(self.grid, (whole, pairs), deep, self.present, self.held, self.share)
+            whole &= self.present[self.grid.cell_nodes].all(axis=1)
+            whole[deep] = False
+            self._hinges = key, hinges(self.grid, whole, deep, self.present, self.held, self.share)
         return self._hinges[1]
-
-    def _between_hinges(self) -> tuple[BoolArray, IntArray]:
-        """Cells (cells,) and pairs of nodes (m, 2) that no deep crack divides, nor one that has parted them."""
-        layered = self.engine.layered
-        cut = self._parted() | (layered.depths >= DEEP)
-        whole = self.intact & self.present[self.grid.cell_nodes].all(axis=1)
-        whole[layered.cell[~cut.any(axis=1)]] = True
-        return whole, layered.halves(self.grid.cell_nodes, cut)
 
     def depart(self, nodes: IntArray, live: BoolArray, *, crushed: bool = False) -> None:
         """As `Floe.depart`; a layered cell goes with the first of its nodes, and is booked once."""
@@ -152,34 +140,26 @@ class CrackingSheet(ExplicitSheet):
         return np.asarray(~self.present[self.grid.cell_nodes[self.engine.layered.cell]].all(axis=1))
 
     def _parted(self) -> BoolArray:
-        """Layered cells that have come apart across n and across t, (count, 2)."""
+        """Layered cells whose crack is through, pressed by nothing, and open or slipped by h/2, (count,)."""
         layered = self.engine.layered
         return layered.parted(self.grid.d, self.ice.h * self.engine.varied.thickness[layered.cell])
 
     def let_go(self, t: float, contact: EdgeContact, out: Outcome, release: Release) -> None:
         """At the start of a window: pieces that nothing presses any more, and those that have turned too far."""
         rotation = np.where(self.present, np.abs(self.state.q[:, 1:]).max(axis=1), 0.0)
+        turned = None
         if rotation.max() > TURNED:
             turned = rotation > 0.5 * TURNED
-            self._release_loose(out, release, turned, self._cut_out(turned, out))
-        elif self._parted().any():
-            self._release_loose(out, release)
+            corners = turned[self.grid.cell_nodes]
+            self._cut(np.asarray(corners.any(axis=1) & ~corners.all(axis=1)), out)
+        elif not self._parted().any():
+            return
+        self._release_loose(out, release, turned)
         if out.pieces:
             out.failure = t, contact.evaluate(t, edge_displacement(self.state, contact.nodes, lever_of(contact)))[0]
 
-    def _cut_out(self, turned: BoolArray, out: Outcome) -> IntArray:
-        """Cells that part nodes which have ``turned`` (nodes,) from others carry nothing any more.
-
-        Returns pairs of turned nodes that hold together beside these cuts, (m, 2).
-        """
-        nodes = self.grid.cell_nodes
-        mixed = np.asarray(turned[nodes].any(axis=1) & ~turned[nodes].all(axis=1))
-        whole, pairs = self._between_hinges()
-        pairs = np.concatenate((pairs, edges_of(nodes[whole & mixed])))
-        self._cut(mixed, out)
-        return pairs[turned[pairs].all(axis=1)]
-
     def _cut(self, mask: BoolArray, out: Outcome) -> None:
+        """Cells that part a piece which has turned too far carry nothing any more."""
         cells = np.flatnonzero(mask & self.live_cells)
         for cell in cells.tolist():
             self.energy.book_failure(cell, self.state)

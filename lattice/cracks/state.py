@@ -12,7 +12,7 @@ from lattice.cracks.cells import BLOCK, LOSSES, Cracks, Plate, room_for
 from lattice.cracks.law import CrackLaw, Local, N
 from lattice.cracks.layers import WEIGHTS
 from lattice.cracks.motion import Layered
-from lattice.cracks.parting import halves, parted
+from lattice.cracks.parting import parted
 from lattice.cracks.slopes import Lean, level, on_nodes
 from lattice.explicit.layout import LANES, copied
 from lattice.grid import Array, BoolArray, IntArray
@@ -94,15 +94,9 @@ class LayeredCells:
         return largest
 
     @property
-    def depths(self) -> Array:
-        """Share of the thickness that is cracked through, across n and t, (count, 2)."""
-        return np.asarray(np.array(WEIGHTS) @ (self._cracks.damage[: self.count] >= 1.0))
-
-    @property
     def depth(self) -> Array:
-        """The same across n, the first crack, (count,)."""
-        across: Array = self.depths[:, N]
-        return across
+        """Share of the thickness that is cracked through, across n, (count,)."""
+        return np.asarray((self._cracks.damage[: self.count, :, N] >= 1.0) @ np.array(WEIGHTS))
 
     @property
     def angle(self) -> Array:
@@ -121,13 +115,9 @@ class LayeredCells:
         return thrust
 
     def parted(self, d: float, thickness: Array) -> BoolArray:
-        """Which have come apart across n and t, (count, 2): see `parting.parted`."""
+        """Which have come apart, (count,): see `parting.parted`."""
         found: BoolArray = parted(self.count, d, thickness, self._cracks)
         return found
-
-    def halves(self, cell_nodes: IntArray, cut: BoolArray) -> IntArray:
-        """Pairs of nodes that hold together although ``cut`` (count, 2), see `parting.halves`."""
-        return halves(cell_nodes[self.cell], self._cracks.axis[:, : self.count], cut)
 
     @property
     def losses(self) -> dict[str, float]:

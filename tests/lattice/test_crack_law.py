@@ -12,7 +12,6 @@ from lattice.cracks.evaluate import evaluate
 from lattice.cracks.law import CrackLaw, layer, local_of
 from lattice.cracks.layers import POINTS, WEIGHTS
 from lattice.cracks.motion import Layered, crack_forces
-from lattice.cracks.parting import halves
 from lattice.cracks.slopes import level, on_nodes
 
 Z, W = np.array(POINTS), np.array(WEIGHTS)
@@ -244,12 +243,3 @@ def test_forces_balance_and_rigid_motion_costs_nothing():
     rigid[3], rigid[4] = -1e-5, 2e-5
     evaluate(0, rigid, np.zeros((5, 4)), 2, plate, the_law, whole, FLAT)
     assert np.abs(nodal(whole, plate, rigid)).max() < 1e-6
-
-
-def test_halves_of_a_cell_hold_their_nodes_together():
-    nodes, axis = np.array([[0, 1, 2, 3]] * 4), np.array([[1.0, 0.2, 1.0, 1.0], [0.0, 0.98, 0.0, 0.0]])
-    cut = np.array([[True, False], [True, False], [False, True], [True, True]])
-    found = [halves(nodes[[k]], axis[:, [k]], cut[[k]]).tolist() for k in range(4)]
-    along_y, along_x = [[0, 2], [1, 3]], [[0, 1], [2, 3]]  # node 1 lies along x from node 0, node 2 along y
-    assert found == [along_y, along_x, along_x, []]
-    assert halves(nodes, axis, np.zeros((4, 2), bool)).tolist() == []

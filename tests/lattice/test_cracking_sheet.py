@@ -13,7 +13,6 @@ from lattice.cracks.hinges import hinges
 from lattice.cracks.law import law_of
 from lattice.cracks.make import Measured, cracking_sheet
 from lattice.explicit.engine import SubSteps
-from lattice.fragments import NO_PAIRS
 from lattice.grid import Grid
 from lattice.ice import Ice
 from lattice.loads import NodeLoad
@@ -127,25 +126,14 @@ def test_a_piece_between_deep_cracks_is_hinged_and_what_is_held_is_not():
     deep = np.flatnonzero(~whole.ravel())
     held, present = np.zeros(GRID.nodes, bool), np.ones(GRID.nodes, bool)
     held[GRID.edge_nodes("x-")] = True
-    found = hinges(GRID, (whole.ravel(), NO_PAIRS), deep, present, held, 0.5)
+    found = hinges(GRID, whole.ravel(), deep, present, held, 0.5)
     rows = np.arange(GRID.nodes) // GRID.ny
     assert np.array_equal(found.hinged, rows > 8)
     assert len(found.pieces) == 1
     assert found.parts == 1
-    halves = hinges(GRID, (whole.ravel(), NO_PAIRS), deep, present, held, 0.2)
+    halves = hinges(GRID, whole.ravel(), deep, present, held, 0.2)
     assert not halves.hinged.any()  # a part of more than a fifth of the floe is half of a floe
     assert halves.parts == 2
-
-
-def test_a_row_of_nodes_that_turns_leaves_as_one_piece():
-    """Every cell of theirs lies on the border of what has turned; single nodes if these held nothing together."""
-    sheet, pieces = sheet_of(), []
-    row = np.array([GRID.node(GRID.nx - 1, j) for j in range(GRID.ny)])
-    sheet.state.q[row, 1] = 0.12
-    sheet.advance(0.0, [], NoContact(), lambda nodes: pieces.append(nodes.tolist()))
-    assert pieces == [row.tolist()]
-    assert not sheet.present[row].any()
-    assert sheet.present[: row[0]].all()
 
 
 class JumpingPush:

@@ -89,11 +89,3 @@ def test_nodes_that_have_left_are_no_piece():
     intact, present = cracked(rows=[4]), np.ones(GRID.nodes, bool)
     present[5 * GRID.ny :] = False
     assert loose_pieces(GRID, intact, present, held_at_back(), 0.9) == ([], 1)
-
-
-def test_nodes_that_half_a_cell_joins_are_one_piece():
-    intact, all_there = np.zeros(GRID.cells, bool), np.ones(GRID.nodes, bool)
-    pairs = np.array([[GRID.node(2, 1), GRID.node(2, 2)], [GRID.node(2, 2), GRID.node(2, 3)]])
-    pieces, _ = loose_pieces(GRID, intact, all_there, np.zeros(GRID.nodes, bool), 0.5, pairs=pairs)
-    assert sorted(map(len, pieces))[-2:] == [1, 3]
-    assert sorted(np.concatenate(pieces).tolist()) == list(range(GRID.nodes))
