@@ -24,7 +24,7 @@ from rubble import compiled as of_rubble
 CASE = "first_cone"
 PACKAGES = {"lattice", "rubble", "coupling"}
 ICE_ALONE = ("rubble.enabled=false", "scenario.duration='0.1 s'")
-#: what of `CASE` is simulated for each part; those that take longest first
+#: what of `CASE` each part takes; those that take longest first, and last what finds kernels of the others done
 PARTS: dict[str, tuple[str, ...]] = {
     "rubble": (
         "rubble.initial_volume='6 m^3'",
@@ -37,6 +37,7 @@ PARTS: dict[str, tuple[str, ...]] = {
     "explicit": (*ICE_ALONE, "fracture.cracks=open", "fracture.propagation=dynamic"),
     "pieces": ("rubble.initial_volume='0 m^3'",),
 }
+OF_RUBBLE = {"rubble", "pieces"}
 SWITCH = "COSIM_COMPILE_AHEAD"  #: 0: runs compile kernels as they come to them
 
 
@@ -52,8 +53,7 @@ def parts_of(scenario: Scenario) -> list[str]:
     """What a scenario needs, in the order of `PARTS`."""
     fracture = scenario.fracture
     ice = "closing" if fracture.cracks == "closing" else "explicit" if fracture.propagation == "dynamic" else "open"
-    of_rubble = {"rubble", "pieces"} if scenario.rubble.enabled else set[str]()
-    return [part for part in PARTS if part == ice or part in of_rubble]
+    return [part for part in PARTS if part == ice or (part in OF_RUBBLE and scenario.rubble.enabled)]
 
 
 def missing(parts: Sequence[str]) -> list[str]:
@@ -69,7 +69,7 @@ def _marks(part: str) -> list[Path]:
 
 
 def compile_part(part: str) -> Compiled:
-    """Runs a part for a moment, in this process."""
+    """Compiles what a part needs, in this process: a case runs for a moment, or pieces meet between two steps."""
     from numba.core import event
 
     from cosim.scenario.loading import load_scenario
@@ -92,8 +92,9 @@ def _between_steps(scenario: Scenario) -> None:
 
     port = build(scenario).rubble
     assert isinstance(port, RubblePort)
-    port.layer.begin()
-    port.layer.runner.break_and_wear(port.layer.store, port.layer.crushed)
+    layer = port.layer
+    layer.begin()
+    layer.runner.break_and_wear(layer.store, layer.crushed)
 
 
 def _is_ours(event: Any) -> bool:

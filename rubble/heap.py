@@ -74,6 +74,8 @@ def heap(
     ``y`` of the sections' planes [m]; ``bulk``, area of ice and pores of all sections together [m^2]; ``slope`` [rad];
     ``thickness`` of the ice [m]; ``room`` for it, to the sea bed [m].
     """
+    from scipy.optimize import brentq  # takes a tenth of a second to load, and most runs lay no heap
+
     step, tangent = STEP * thickness, float(np.tan(slope))
     nearest = min(float(place.distance(np.array([x]), y[k])[0]) for k, (x, _) in place.fronts.items())
     farthest = nearest + sqrt(2.0 * bulk / tangent) + bulk / room + 2.0 * step  # one section holds all
@@ -82,8 +84,6 @@ def heap(
 
     def thick(reach: float) -> dict[int, Array]:
         return {k: np.clip(tangent * (reach - s), 0.0, room) for k, s in distance.items()}
-
-    from scipy.optimize import brentq  # takes a tenth of a second to load, and most runs lay no heap
 
     reach = brentq(lambda r: step * sum(float(t.sum()) for t in thick(r).values()) - bulk, nearest, farthest)
     return {k: Flank(x[k], t) for k, t in thick(reach).items() if t.any()}
